@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+namespace glint::daemon {
+
+/// A queue of fixed capacity between one producer and one consumer thread. Elements are swapped in
+/// and out of preallocated slots, so buffers inside them go round and nothing is allocated.
+/// close() wakes both sides. Thread-safe.
+template <class T>
+class BoundedQueue {
+ public:
+  explicit BoundedQueue(std::size_t capacity) : slots_(capacity) {}
+
+  /// Swaps `item` in, waiting for room. False when the queue is closed.
+  bool push_wait(T& item) {
+    std::unique_lock lock(mutex_);
+    room_.wait(lock, [&] { return closed_ || size_ < slots_.size(); });
+    return put(item, lock);
+  }
+
+  /// Swaps `item` in; when full, the oldest element is dropped and counted. False when closed.
+  bool push_drop_oldest(T& item) {
+    std::unique_lock lock(mutex_);
+    if (!closed_ && size_ == slots_.size()) {
+      head_ = (head_ + 1) % slots_.size();
+      --size_;
+      ++dropped_;
+    }
+    return put(item, lock);
+  }
+
+  enum class PopResult { kItem, kTimeout, kClosed };
+
+  /// Swaps the oldest element out. After close() what is left is still handed out, then kClosed.
+  PopResult pop(T& item, std::chrono::milliseconds timeout) {
+    std::unique_lock lock(mutex_);
+    items_.wait_for(lock, timeout, [&] { return closed_ || size_ > 0; });
+    if (size_ == 0) return closed_ ? PopResult::kClosed : PopResult::kTimeout;
+    std::swap(item, slots_[head_]);
+    head_ = (head_ + 1) % slots_.size();
+    --size_;
+    lock.unlock();
+    room_.notify_one();
+    return PopResult::kItem;
+  }
+
+  void close() {
+    {
+      const std::lock_guard lock(mutex_);
+      closed_ = true;
+    }
+    room_.notify_all();
+    items_.notify_all();
+  }
+
+  [[nodiscard]] std::size_t size() const {
+    const std::lock_guard lock(mutex_);
+    return size_;
+  }
+  [[nodiscard]] std::size_t capacity() const { return slots_.size(); }
+  /// Elements dropped by push_drop_oldest().
+  [[nodiscard]] std::uint64_t dropped() const {
+    const std::lock_guard lock(mutex_);
+    return dropped_;
+  }
+
+ private:
+  bool put(T& item, std::unique_lock<std::mutex>& lock) {
+    if (closed_) return false;
+    std::swap(item, slots_[(head_ + size_) % slots_.size()]);
+    ++size_;
+    lock.unlock();
+    items_.notify_one();
+    return true;
+  }
+
+  mutable std::mutex mutex_;
+  std::condition_variable room_;
+  std::condition_variable items_;
+  std::vector<T> slots_;
+  std::size_t head_ = 0;
+  std::size_t size_ = 0;
+  std::uint64_t dropped_ = 0;
+  bool closed_ = false;
+};
+
+}  // namespace glint::daemon

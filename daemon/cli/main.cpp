@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+//
+// glint: captures and clients of the daemon, one sub-command a file in this folder.
+#include <exception>
+#include <iostream>
+
+#include "daemon/cli/command.hpp"
+#include "daemon/version.hpp"
+#include "driver/core/error.hpp"
+
+namespace glint::cli {
+namespace {
+
+int report(const std::exception& error, ExitCode code) {
+  std::cerr << "glint: " << error.what() << '\n';
+  return code;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{"Glint: Ouster lidar SLAM. Captures, simulation, and clients of glintd.", "glint"};
+  app.set_version_flag("--version", std::string("glint ") + kVersion);
+  app.require_subcommand(1);
+  add_replay(app);
+  add_dump(app);
+  add_info(app);
+  add_simulate(app);
+  add_emulate(app);
+  add_status(app);
+  add_pose(app);
+  add_watch(app);
+  add_map(app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kDone : kUsage;
+  } catch (const UsageError& error) {
+    return report(error, kUsage);
+  } catch (const InputError& error) {
+    return report(error, kBadInput);
+  } catch (const ConnectionError& error) {
+    return report(error, kNoDaemon);
+  } catch (const std::exception& error) {
+    return report(error, kFailed);
+  }
+  return kDone;
+}
+
+}  // namespace
+}  // namespace glint::cli
+
+int main(int argc, char** argv) { return glint::cli::run(argc, argv); }

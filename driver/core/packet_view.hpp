@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "driver/core/packet_format.hpp"
+#include "driver/core/time.hpp"
+
+namespace glint {
+
+/// Why bytes are no lidar packet of this sensor.
+enum class PacketError {
+  kNone,
+  kSize,    ///< Not the size that metadata predicts.
+  kType,    ///< The packet type field says it is not a lidar packet.
+  kSerial,  ///< Another sensor's serial number.
+};
+
+/// One column of a checked packet. Valid while the packet's bytes are.
+class ColumnView {
+ public:
+  ColumnView(const PacketFormat& format, const std::byte* data) : format_(&format), data_(data) {}
+
+  [[nodiscard]] SensorTime time() const;
+  [[nodiscard]] std::uint16_t measurement_id() const;
+  /// The status word as on the wire: 32 bits legacy (all ones is good), 16 bits later (bit 0).
+  [[nodiscard]] std::uint32_t status() const;
+  [[nodiscard]] bool valid() const { return (status() & 1U) != 0; }
+  /// Frame id as repeated in legacy columns; meaningless for other profiles.
+  [[nodiscard]] std::uint16_t legacy_frame_id() const;
+  /// First byte of the first pixel; H pixels of layout->pixel_bytes follow.
+  [[nodiscard]] const std::byte* pixels() const;
+  /// Decoded value of one channel of one pixel; 0 where the profile lacks the channel.
+  [[nodiscard]] std::uint32_t value(Channel channel, int row) const;
+
+ private:
+  const PacketFormat* format_;
+  const std::byte* data_;
+};
+
+/// A lidar packet whose size has been checked against the format: no accessor reads outside.
+/// Non-owning; valid while the bytes are. Thread-compatible, no allocation, never throws.
+class PacketView {
+ public:
+  /// Checks size and, where the profile has one, the type field.
+  static std::optional<PacketView> parse(const PacketFormat& format,
+                                         std::span<const std::byte> bytes,
+                                         PacketError* error = nullptr);
+
+  /// Frame id, 16 bits wide: of the header, or of the first column for legacy packets.
+  [[nodiscard]] std::uint16_t frame_id() const;
+  /// Initialization id (24 bits) and serial number (40 bits); 0 for legacy packets.
+  [[nodiscard]] std::uint32_t init_id() const;
+  [[nodiscard]] std::uint64_t serial_number() const;
+  /// Column `index` of this packet, 0 <= index < columns_per_packet.
+  [[nodiscard]] ColumnView column(int index) const;
+  [[nodiscard]] int column_count() const { return format_->columns_per_packet; }
+  [[nodiscard]] std::span<const std::byte> bytes() const { return bytes_; }
+
+ private:
+  PacketView(const PacketFormat& format, std::span<const std::byte> bytes)
+      : format_(&format), bytes_(bytes) {}
+  const PacketFormat* format_;
+  std::span<const std::byte> bytes_;
+};
+
+}  // namespace glint

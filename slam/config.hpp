@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#pragma once
+
+#include <string>
+
+namespace glint::slam {
+
+/// Every parameter of the pipeline, with the defaults of preset `full`. Keys in the configuration
+/// file are `slam.` + the member's name. Value type.
+struct SlamConfig {
+  /// Name of the preset these values started from: "paper" or "full".
+  std::string preset = "full";
+
+  /// Scans with a smaller share of their columns are not used; below the second one the state is
+  /// DEGRADED.
+  double min_completeness = 0.5;
+  double degraded_completeness = 0.9;
+  /// Returns nearer than this are the robot itself, m.
+  double min_range_m = 0.5;
+
+  /// Points are brought to the scan's end by the motion of the last scan. Off: the scan is taken as
+  /// rigid, its pose is that of its middle and is extrapolated to its end.
+  bool deskew = true;
+
+  /// ORB: most keypoints, pyramid levels, scale between levels, FAST threshold.
+  int orb_features = 1000;
+  int orb_levels = 4;
+  double orb_scale = 1.2;
+  int orb_fast_threshold = 20;
+
+  /// Largest Hamming distance of a match, share of the best ones kept, and at most how many.
+  int match_max_distance = 64;
+  double match_keep_share = 0.3;
+  int match_max = 200;
+
+  /// Registration: inlier gate of the robust start, and scale of the Huber kernel, m.
+  double registration_inlier_m = 0.3;
+  double registration_huber_m = 0.1;
+  /// A registration with fewer inliers is a failure.
+  int registration_min_inliers = 12;
+  /// Largest speed (m/s) and turn rate (rad/s) believed.
+  double max_speed_mps = 40.0;
+  double max_turn_rate_radps = 6.0;
+  /// Scans bridged by constant velocity (state DEGRADED) before the state is LOST.
+  int max_coasted_scans = 3;
+
+  /// A keyframe is made after this distance (m), angle (rad), or when fewer matches remain.
+  double keyframe_distance_m = 0.5;
+  double keyframe_angle_rad = 0.26;
+  int keyframe_min_matches = 60;
+
+  /// Edge of the map's voxels, m: one point is kept in each. At most this many points are kept.
+  double map_voxel_m = 0.1;
+  int map_max_points = 8000000;
+  /// Every n-th column of a keyframe goes into the map.
+  int map_column_step = 2;
+};
+
+/// The values of a preset: "paper" or "full". @throws InputError for any other name.
+SlamConfig preset_config(const std::string& name);
+
+}  // namespace glint::slam

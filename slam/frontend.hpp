@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "driver/core/clock.hpp"
+#include "driver/core/lidar_scan.hpp"
+#include "driver/core/sensor_info.hpp"
+#include "slam/config.hpp"
+#include "slam/keyframe.hpp"
+#include "slam/odometry_estimate.hpp"
+#include "slam/scan_images.hpp"
+#include "slam/stage_times.hpp"
+
+namespace glint::slam {
+
+/// Scans in, poses out: the intensity odometry of [Du & Beltrame 2023, sec. III-A]. Deterministic:
+/// the same scans give the same bits, whatever the time they take. Thread-compatible; owned by the
+/// odometry thread.
+class Frontend {
+ public:
+  Frontend(const SensorInfo& info, const SlamConfig& config, Clock clock = {});
+  ~Frontend();
+  Frontend(const Frontend&) = delete;
+  Frontend& operator=(const Frontend&) = delete;
+
+  /// The pose of one scan. Valid until the next call. Never throws on any scan of this sensor.
+  const OdometryEstimate& process(const LidarScan& scan);
+  /// The keyframe that the last scan gave, if any; a second call gives none.
+  std::optional<Keyframe> take_keyframe();
+  /// Forgets the trajectory: the next scan is the origin of a new odometry frame (segment + 1).
+  void reset();
+
+  /// What the last scan's stages took (kImage ... kRegistration, kTotal).
+  [[nodiscard]] const StageTimes& stage_times() const;
+  /// The destaggered images of the last scan.
+  [[nodiscard]] const ScanImages& images() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace glint::slam

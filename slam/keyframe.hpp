@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "slam/odometry_estimate.hpp"
+
+namespace glint::slam {
+
+/// A point with its intensity (channel units scaled to 0-255), float as on the wire and in exports.
+struct MapPoint {
+  float x_m = 0.0F;
+  float y_m = 0.0F;
+  float z_m = 0.0F;
+  float intensity = 0.0F;
+};
+
+/// A scan worth keeping: what the back end builds the map, loops and session from. Value type.
+struct Keyframe {
+  std::uint64_t id = 0;  ///< 0, 1, 2, ... in order.
+  OdometryEstimate estimate;
+  /// Points in the sensor frame at estimate.stamp (motion compensated), m.
+  std::vector<MapPoint> points;
+};
+
+}  // namespace glint::slam

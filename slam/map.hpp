@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "driver/core/pose.hpp"
+#include "slam/keyframe.hpp"
+
+namespace glint::slam {
+
+/// Integer coordinates of a map tile: floor(coordinate / kMapTile_m) per axis, map frame.
+using TileIndex = std::array<std::int32_t, 3>;
+/// Edge of a tile, m.
+constexpr double kMapTile_m = 16.0;
+
+/// A cube of the map. Immutable once published.
+struct MapTile {
+  TileIndex index{};
+  std::uint64_t revision = 0;    ///< Map revision at which the tile last changed.
+  std::vector<MapPoint> points;  ///< Map frame, m; in order of arrival, one per voxel.
+};
+
+/// The whole map at one revision; tiles are shared with later snapshots while they do not change.
+struct MapSnapshot {
+  std::uint64_t revision = 0;
+  std::size_t point_count = 0;
+  std::size_t keyframe_count = 0;
+  std::uint64_t points_refused = 0;  ///< New voxels not stored because the map is full.
+  std::vector<std::shared_ptr<const MapTile>> tiles;  ///< Ordered by index.
+};
+
+/// Voxel-downsampled points in the map frame: the first point to fall into a voxel stays.
+/// Bounded by `max_points`. Deterministic. Thread-compatible; snapshots may be read anywhere.
+class VoxelMap {
+ public:
+  VoxelMap(double voxel_m, std::size_t max_points);
+
+  /// Adds points given in the sensor frame, seen from T_map_sensor.
+  void insert(const Pose& T_map_sensor, std::span<const MapPoint> points);
+  void clear();
+  [[nodiscard]] std::size_t point_count() const { return point_count_; }
+  /// The present state; copies only tiles that changed since the last call.
+  [[nodiscard]] std::shared_ptr<const MapSnapshot> snapshot();
+
+ private:
+  struct WorkingTile {
+    MapTile tile;
+    std::shared_ptr<const MapTile> published;  ///< Null while there are changes to publish.
+    std::unordered_map<std::uint64_t, std::uint32_t> point_of_voxel;
+  };
+
+  const double voxel_m_;
+  const std::size_t max_points_;
+  std::map<TileIndex, WorkingTile> tiles_;
+  std::uint64_t revision_ = 0;
+  std::size_t point_count_ = 0;
+  std::uint64_t points_refused_ = 0;
+};
+
+}  // namespace glint::slam

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string_view>
+
+#include "driver/core/sensor_info.hpp"
+#include "slam/config.hpp"
+#include "slam/keyframe.hpp"
+
+namespace glint::slam {
+
+/// The session file: one SQLite database (WAL) that holds each keyframe from the moment it is added.
+/// Schema version 1: `meta(key, value)`, `keyframes(id, t_ns, frame_id, T_odom_sensor..., points)`,
+/// `edges(from_id, to_id, kind, T..., information)`, `events(t_ns, kind, data)`.
+/// Thread-compatible; owned by the back end.
+class SessionStore {
+ public:
+  /// Creates the file, replacing one that is there. @throws InputError naming the file if it cannot.
+  SessionStore(const std::filesystem::path& file, const SensorInfo& info, const SlamConfig& config);
+  ~SessionStore();
+  SessionStore(const SessionStore&) = delete;
+  SessionStore& operator=(const SessionStore&) = delete;
+
+  /// Commits a keyframe and the odometry edge to the one before it of the same segment. False when
+  /// the file could not be written (disk full); error() then says why, and the next call tries anew.
+  [[nodiscard]] bool add(const Keyframe& keyframe, const Pose& T_map_sensor);
+  /// Commits an event: `data` is a JSON object.
+  [[nodiscard]] bool add_event(SensorTime stamp, std::string_view kind, std::string_view data);
+  [[nodiscard]] std::string_view error() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace glint::slam
