@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "driver/core/error.hpp"
+#include "pcap/internet_checksum.hpp"
 
 namespace glint {
 namespace {
@@ -43,29 +44,14 @@ class Appender {
     le16(value & 0xFFFF);
     le16(value >> 16);
   }
-  void bytes(std::span<const std::uint8_t> data) {
-    out_.insert(out_.end(), data.begin(), data.end());
-  }
+  void bytes(Bytes data) { out_.insert(out_.end(), data.begin(), data.end()); }
 
  private:
   std::vector<std::uint8_t>& out_;
 };
 
-std::span<const std::uint8_t> address_bytes(const IpAddress& address) {
+Bytes address_bytes(const IpAddress& address) {
   return {address.bytes.data(), address.is_v6 ? std::size_t{16} : std::size_t{4}};
-}
-
-/// Sum of big-endian 16-bit words, the Internet checksum before folding (RFC 1071).
-std::uint64_t word_sum(std::span<const std::uint8_t> data) {
-  std::uint64_t sum = 0;
-  for (std::size_t i = 0; i + 1 < data.size(); i += 2) sum += (data[i] * 256U) + data[i + 1];
-  if (data.size() % 2 == 1) sum += data.back() * 256U;
-  return sum;
-}
-
-std::uint16_t checksum(std::uint64_t sum) {
-  while (sum >> 16 != 0) sum = (sum & 0xFFFF) + (sum >> 16);
-  return static_cast<std::uint16_t>(~sum & 0xFFFF);
 }
 
 void set_be16(std::vector<std::uint8_t>& bytes, std::size_t at, std::uint16_t value) {
@@ -84,10 +70,7 @@ void build_udp(const Endpoint& source, const Endpoint& destination,
   out.be16(0);
   udp.resize(length);
   if (!payload.empty()) std::memcpy(&udp[kUdpHeaderBytes], payload.data(), payload.size());
-  const std::uint64_t pseudo_header = word_sum(address_bytes(source.address)) +
-                                      word_sum(address_bytes(destination.address)) + kProtocolUdp +
-                                      length;
-  const std::uint16_t sum = checksum(pseudo_header + word_sum(udp));
+  const std::uint16_t sum = udp_checksum(source.address, destination.address, udp);
   // A computed 0 is sent as all ones; 0 would mean that there is no checksum (RFC 768).
   set_be16(udp, 6, sum == 0 ? 0xFFFF : sum);
 }
@@ -116,7 +99,7 @@ void append_ipv4_header(std::vector<std::uint8_t>& record, const Endpoint& sourc
   out.be16(0);
   out.bytes(address_bytes(source.address));
   out.bytes(address_bytes(destination.address));
-  set_be16(record, start + 10, checksum(word_sum({&record[start], kHeaderBytes})));
+  set_be16(record, start + 10, internet_checksum({&record[start], kHeaderBytes}));
 }
 
 void append_ipv6_header(std::vector<std::uint8_t>& record, const Endpoint& source,

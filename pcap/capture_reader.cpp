@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#include "pcap/capture_reader.hpp"
+
+#include <fmt/format.h>
+#include <pcap/pcap.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <optional>
+#include <utility>
+
+#include "driver/core/error.hpp"
+#include "pcap/capture_file.hpp"
+#include "pcap/ip_packet.hpp"
+#include "pcap/link_layer.hpp"
+
+namespace glint {
+namespace {
+
+struct PcapCloser {
+  void operator()(pcap_t* capture) const { pcap_close(capture); }
+};
+using PcapHandle = std::unique_ptr<pcap_t, PcapCloser>;
+
+PcapHandle open_capture(const std::filesystem::path& file) {
+  std::FILE* const stream = open_capture_file(file);
+  if (stream == nullptr) {
+    throw InputError(
+        fmt::format("The capture {} cannot be read: {}; check the path and its rights.",
+                    file.string(), std::strerror(errno)));
+  }
+  std::array<char, PCAP_ERRBUF_SIZE> message{};
+  PcapHandle capture(
+      pcap_fopen_offline_with_tstamp_precision(stream, PCAP_TSTAMP_PRECISION_NANO, message.data()));
+  if (capture == nullptr) {
+    std::fclose(stream);
+    throw InputError(
+        fmt::format("{} is no pcap or pcapng capture ({}); give a file that tcpdump, "
+                    "Wireshark or the sensor's tools recorded.",
+                    file.string(), message.data()));
+  }
+  return capture;
+}
+
+std::string link_type_name(int dlt) {
+  const char* const name = pcap_datalink_val_to_name(dlt);
+  return name != nullptr ? name : fmt::format("DLT {}", dlt);
+}
+
+LinkType known_link_type(const std::filesystem::path& file, int dlt) {
+  const std::optional<LinkType> type = link_type_of(dlt);
+  if (type) return *type;
+  throw InputError(
+      fmt::format("{} was captured with link type {}, which carries no IP that can be "
+                  "read here; capture on an Ethernet, loopback or \"any\" interface.",
+                  file.string(), link_type_name(dlt)));
+}
+
+}  // namespace
+
+struct CaptureReader::Impl {
+  explicit Impl(std::filesystem::path path)
+      : file(std::move(path)),
+        capture(open_capture(file)),
+        link_type(known_link_type(file, pcap_datalink(capture.get()))),
+        link_name(link_type_name(pcap_datalink(capture.get()))) {}
+
+  /// The next record, or null at the end of the file or where it breaks off.
+  const pcap_pkthdr* read_record(Bytes& record);
+  /// What the record holds of a UDP datagram: it, or the one it completes. Empty if nothing.
+  Bytes udp_of(Bytes record, HostTime time, IpPacket& packet);
+  /// Counts what is no datagram. True if `datagram` was set.
+  bool take(Bytes record, HostTime time);
+
+  const std::filesystem::path file;
+  const PcapHandle capture;
+  const LinkType link_type;
+  const std::string link_name;
+  std::string problem;
+  bool ended = false;
+  CaptureCounters counters;
+  IpReassembler reassembler;
+  Datagram datagram;
+};
+
+const pcap_pkthdr* CaptureReader::Impl::read_record(Bytes& record) {
+  if (ended) return nullptr;
+  pcap_pkthdr* header = nullptr;
+  const u_char* data = nullptr;
+  const int status = pcap_next_ex(capture.get(), &header, &data);
+  if (status == 1) {
+    ++counters.records;
+    record = {data, header->caplen};
+    return header;
+  }
+  ended = true;
+  reassembler.finish();
+  if (status != PCAP_ERROR_BREAK) {
+    problem =
+        fmt::format("The capture {} breaks off after {} records ({}); what came before is used.",
+                    file.string(), counters.records, pcap_geterr(capture.get()));
+  }
+  return nullptr;
+}
+
+Bytes CaptureReader::Impl::udp_of(Bytes record, HostTime time, IpPacket& packet) {
+  const LinkStatus link = strip_link_header(link_type, record);
+  const ParseStatus ip = link == LinkStatus::kIp          ? parse_ip(record, packet)
+                         : link == LinkStatus::kTruncated ? ParseStatus::kTruncated
+                                                          : ParseStatus::kOther;
+  if (ip == ParseStatus::kTruncated) {
+    ++counters.truncated_records;
+  } else if (ip == ParseStatus::kMalformed) {
+    ++counters.malformed_records;
+  } else if (ip == ParseStatus::kOther || packet.protocol != kProtocolUdp) {
+    ++counters.other_protocols;
+  } else if (packet.is_fragment) {
+    ++counters.fragments;
+    return reassembler.push(packet, time);
+  } else {
+    ++counters.whole_datagrams;
+    return packet.payload;
+  }
+  return {};
+}
+
+bool CaptureReader::Impl::take(Bytes record, HostTime time) {
+  IpPacket packet;
+  const Bytes bytes = udp_of(record, time, packet);
+  if (bytes.data() == nullptr) return false;
+  UdpDatagram udp;
+  const ParseStatus status = parse_udp(bytes, udp);
+  if (status != ParseStatus::kOk) {
+    // The record was counted as a datagram, or as a fragment of one, in good faith.
+    if (!packet.is_fragment) --counters.whole_datagrams;
+    ++(status == ParseStatus::kTruncated ? counters.truncated_records : counters.malformed_records);
+    return false;
+  }
+  datagram = {time,
+              {packet.source, udp.source_port},
+              {packet.destination, udp.destination_port},
+              std::as_bytes(udp.payload)};
+  return true;
+}
+
+CaptureReader::CaptureReader(std::filesystem::path file)
+    : impl_(std::make_unique<Impl>(std::move(file))) {}
+CaptureReader::~CaptureReader() = default;
+
+const Datagram* CaptureReader::next() {
+  Bytes record;
+  while (const pcap_pkthdr* header = impl_->read_record(record)) {
+    // With nanosecond precision tv_usec holds nanoseconds.
+    const HostTime time{header->ts.tv_sec * kNsPerSecond + header->ts.tv_usec};
+    if (impl_->take(record, time)) return &impl_->datagram;
+  }
+  return nullptr;
+}
+
+CaptureCounters CaptureReader::counters() const {
+  CaptureCounters counters = impl_->counters;
+  counters.reassembly = impl_->reassembler.counters();
+  return counters;
+}
+
+const std::string& CaptureReader::link_type() const { return impl_->link_name; }
+const std::string& CaptureReader::problem() const { return impl_->problem; }
+const std::filesystem::path& CaptureReader::file() const { return impl_->file; }
+
+}  // namespace glint
