@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#include "pcap/flow_survey.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <tuple>
+
+#include "driver/core/error.hpp"
+#include "driver/core/packet_view.hpp"
+
+namespace glint {
+namespace {
+
+constexpr std::size_t kMaxFlows = 1024;
+/// Datagrams read after the sensor's first: some seconds, in which a second sensor shows itself.
+constexpr std::uint64_t kSurveyDatagrams = 4096;
+
+using FlowKey = std::tuple<IpAddress, std::uint16_t, std::size_t, std::uint64_t>;
+
+std::uint64_t serial_of(const Datagram& datagram, const PacketFormat& format) {
+  const auto view = PacketView::parse(format, datagram.payload);
+  return view ? view->serial_number() : 0;
+}
+
+std::vector<Flow> sorted_flows(const std::map<FlowKey, std::uint64_t>& counts) {
+  std::vector<Flow> flows;
+  flows.reserve(counts.size());
+  for (const auto& [key, count] : counts) {
+    flows.push_back(
+        {std::get<0>(key), std::get<1>(key), std::get<2>(key), std::get<3>(key), count});
+  }
+  std::ranges::stable_sort(flows, std::ranges::greater{}, &Flow::datagrams);
+  return flows;
+}
+
+/// "64 of 8448 bytes to port 7502 from 10.0.0.7, ...", the largest few.
+std::string list_flows(const std::vector<Flow>& flows) {
+  constexpr std::size_t kListed = 5;
+  std::string list;
+  for (const Flow& flow : flows) {
+    if (&flow == flows.data() + kListed) return list + ", ...";
+    list += fmt::format("{}{} of {} bytes to port {} from {}", list.empty() ? "" : ", ",
+                        flow.datagrams, flow.bytes, flow.port, to_string(flow.source));
+  }
+  return list;
+}
+
+std::string no_datagrams(const FlowSurvey& survey, const std::filesystem::path& file) {
+  const CaptureCounters& counters = survey.counters;
+  if (counters.records == 0) {
+    return fmt::format(
+        "The capture {} is empty: it has no records; record again while the sensor "
+        "sends to this machine.{}",
+        file.string(), survey.problem.empty() ? "" : " " + survey.problem);
+  }
+  return fmt::format(
+      "The capture {} holds no whole UDP datagram in its {} records ({} of other "
+      "protocols, {} truncated, {} malformed, {} fragments); record again, with full "
+      "packet length (tcpdump -s 0) and no port filter, which would lose fragments.",
+      file.string(), counters.records, counters.other_protocols, counters.truncated_records,
+      counters.malformed_records, counters.fragments);
+}
+
+std::string source_clause(const std::optional<IpAddress>& source_ip) {
+  return source_ip ? fmt::format(" from {}", to_string(*source_ip)) : std::string();
+}
+
+/// The flows of the sensor's packet size, from the wanted source.
+std::vector<Flow> flows_of_size(const FlowSurvey& survey, const std::filesystem::path& file,
+                                const SensorInfo& info, const PacketFormat& format,
+                                const std::optional<IpAddress>& source_ip) {
+  std::vector<Flow> matching;
+  for (const Flow& flow : survey.flows) {
+    if (flow.bytes == format.packet_bytes && (!source_ip || flow.source == *source_ip)) {
+      matching.push_back(flow);
+    }
+  }
+  if (!matching.empty()) return matching;
+  throw InputError(fmt::format(
+      "The capture {} has no lidar packet of this sensor{}: its metadata ({}, {}, {} beams) "
+      "predicts {} bytes on port {}, but the capture has {}; the metadata is likely another "
+      "sensor's or of another lidar profile, so give the right one with --meta{}.",
+      file.string(), source_clause(source_ip), to_string(info.profile), info.lidar_mode,
+      info.pixels_per_column, format.packet_bytes, info.lidar_port, list_flows(survey.flows),
+      source_ip ? " or another --source-ip" : ""));
+}
+
+void keep_serial(std::vector<Flow>& flows, std::uint64_t serial,
+                 const std::filesystem::path& file) {
+  if (serial == 0) return;
+  const std::uint64_t other = flows.front().serial;
+  std::erase_if(flows, [&](const Flow& f) { return f.serial != 0 && f.serial != serial; });
+  if (!flows.empty()) return;
+  throw MetadataError(
+      fmt::format("The lidar packets in {} come from sensor {}, but the metadata is that of sensor "
+                  "{}; give the "
+                  "metadata recorded with this capture with --meta.",
+                  file.string(), other, serial));
+}
+
+/// IMU packets carry no serial: they are those of the lidar's source address.
+void find_imu_port(const FlowSurvey& survey, const SensorInfo& info, SensorFlow& found) {
+  found.imu_port = static_cast<std::uint16_t>(info.imu_port);
+  const Flow* elsewhere = nullptr;
+  for (const Flow& flow : survey.flows) {
+    if (flow.bytes != kLegacyImuPacketBytes || flow.source != found.source) continue;
+    if (flow.port == info.imu_port) return;
+    if (elsewhere == nullptr) elsewhere = &flow;
+  }
+  if (elsewhere == nullptr) return;
+  found.imu_port = elsewhere->port;
+  found.notices.push_back(fmt::format("IMU packets found on port {}, metadata says {}.",
+                                      found.imu_port, info.imu_port));
+}
+
+}  // namespace
+
+FlowSurvey survey_flows(const std::filesystem::path& file, const PacketFormat* format) {
+  CaptureReader reader(file);
+  FlowSurvey survey;
+  std::map<FlowKey, std::uint64_t> counts;
+  std::uint64_t since_first_packet = 0;
+  while (const Datagram* datagram = reader.next()) {
+    const bool expected = format != nullptr && datagram->payload.size() == format->packet_bytes;
+    const FlowKey key{datagram->source.address, datagram->destination.port,
+                      datagram->payload.size(), expected ? serial_of(*datagram, *format) : 0};
+    if (counts.size() < kMaxFlows || counts.contains(key)) ++counts[key];
+    if (survey.datagrams++ == 0) survey.first_time = datagram->host_time;
+    survey.last_time = datagram->host_time;
+    if (expected || since_first_packet > 0) ++since_first_packet;
+    if (since_first_packet > kSurveyDatagrams) break;
+  }
+  survey.flows = sorted_flows(counts);
+  survey.counters = reader.counters();
+  survey.link_type = reader.link_type();
+  survey.problem = reader.problem();
+  return survey;
+}
+
+std::uint64_t expected_serial(const SensorInfo& info, const PacketFormat& format) {
+  if (format.legacy()) return 0;
+  std::uint64_t serial = 0;
+  const char* const end = info.serial_number.data() + info.serial_number.size();
+  const auto result = std::from_chars(info.serial_number.data(), end, serial);
+  return result.ec == std::errc() && result.ptr == end ? serial : 0;
+}
+
+SensorFlow find_sensor_flow(const FlowSurvey& survey, const std::filesystem::path& file,
+                            const SensorInfo& info, const PacketFormat& format,
+                            const std::optional<IpAddress>& source_ip) {
+  if (survey.datagrams == 0) throw InputError(no_datagrams(survey, file));
+  std::vector<Flow> flows = flows_of_size(survey, file, info, format, source_ip);
+  SensorFlow found;
+  found.serial = expected_serial(info, format);
+  keep_serial(flows, found.serial, file);
+
+  std::vector<Flow> on_port = flows;
+  std::erase_if(on_port, [&](const Flow& f) { return f.port != info.lidar_port; });
+  const Flow& best = on_port.empty() ? flows.front() : on_port.front();
+  found.source = best.source;
+  found.lidar_port = best.port;
+  if (on_port.empty()) {
+    found.notices.push_back(
+        fmt::format("Lidar packets found on port {} by their size of {} bytes, metadata says {}.",
+                    best.port, best.bytes, info.lidar_port));
+  }
+  for (const Flow& flow : flows) {
+    if (flow.port != best.port || flow.source == best.source) continue;
+    found.notices.push_back(
+        fmt::format("Both {} and {} send packets of {} bytes to port {}; those of {} are used, "
+                    "--source-ip picks the other.",
+                    to_string(best.source), to_string(flow.source), best.bytes, best.port,
+                    to_string(best.source)));
+  }
+  find_imu_port(survey, info, found);
+  return found;
+}
+
+}  // namespace glint
