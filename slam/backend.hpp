@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string_view>
 
 #include "driver/core/clock.hpp"
 #include "slam/config.hpp"
@@ -45,8 +46,9 @@ class Backend {
   [[nodiscard]] std::string_view store_error() const;
 
  private:
+  const SlamConfig config_;
   const Clock clock_;
-  VoxelMap map_;
+  std::optional<VoxelMap> map_;  ///< Made with the first keyframe, whose ranges set the voxels.
   std::unique_ptr<SessionStore> store_;
   MapCorrection correction_;
   std::shared_ptr<const MapSnapshot> snapshot_;

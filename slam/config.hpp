@@ -50,9 +50,11 @@ struct SlamConfig {
   double keyframe_angle_rad = 0.26;
   int keyframe_min_matches = 60;
 
-  /// Edge of the map's voxels, m: one point is kept in each. At most this many points are kept.
-  double map_voxel_m = 0.1;
-  int map_max_points = 8000000;
+  /// Edge of the map's voxels, m: one point is kept in each. 0: a fortieth of the first keyframe's
+  /// median range, between 0.05 and 0.5 m, so that rooms and streets need no setting.
+  double map_voxel_m = 0.0;
+  /// At most this many points are kept; what would be new then is counted and left out.
+  int map_max_points = 4000000;
   /// Every n-th column of a keyframe goes into the map.
   int map_column_step = 2;
 };

@@ -8,7 +8,7 @@
 #include <map>
 #include <memory>
 #include <span>
-#include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "driver/core/pose.hpp"
@@ -41,6 +41,7 @@ struct MapSnapshot {
 /// Bounded by `max_points`. Deterministic. Thread-compatible; snapshots may be read anywhere.
 class VoxelMap {
  public:
+  /// `voxel_m`: edge of a voxel, at least 0.01 m.
   VoxelMap(double voxel_m, std::size_t max_points);
 
   /// Adds points given in the sensor frame, seen from T_map_sensor.
@@ -48,13 +49,13 @@ class VoxelMap {
   void clear();
   [[nodiscard]] std::size_t point_count() const { return point_count_; }
   /// The present state; copies only tiles that changed since the last call.
-  [[nodiscard]] std::shared_ptr<const MapSnapshot> snapshot();
+  [[nodiscard]] std::shared_ptr<MapSnapshot> snapshot();
 
  private:
   struct WorkingTile {
     MapTile tile;
     std::shared_ptr<const MapTile> published;  ///< Null while there are changes to publish.
-    std::unordered_map<std::uint64_t, std::uint32_t> point_of_voxel;
+    std::unordered_set<std::uint64_t> occupied_voxels;  ///< Voxels that hold a point.
   };
 
   const double voxel_m_;

@@ -12,20 +12,22 @@
 
 namespace glint::slam {
 
-/// The session file: one SQLite database (WAL) that holds each keyframe from the moment it is added.
-/// Schema version 1: `meta(key, value)`, `keyframes(id, t_ns, frame_id, T_odom_sensor..., points)`,
-/// `edges(from_id, to_id, kind, T..., information)`, `events(t_ns, kind, data)`.
+/// The session file: one SQLite database (WAL) that holds each keyframe from the moment it is
+/// added. Schema version 1: tables `meta` (key, value; says how poses and points are packed),
+/// `keyframes`, `edges` (relative poses between keyframes with their covariance), `events`.
 /// Thread-compatible; owned by the back end.
 class SessionStore {
  public:
-  /// Creates the file, replacing one that is there. @throws InputError naming the file if it cannot.
+  /// Creates the file, replacing one that is there. @throws InputError naming the file if it
+  /// cannot.
   SessionStore(const std::filesystem::path& file, const SensorInfo& info, const SlamConfig& config);
   ~SessionStore();
   SessionStore(const SessionStore&) = delete;
   SessionStore& operator=(const SessionStore&) = delete;
 
   /// Commits a keyframe and the odometry edge to the one before it of the same segment. False when
-  /// the file could not be written (disk full); error() then says why, and the next call tries anew.
+  /// the file could not be written (disk full); error() then says why, and the next call tries
+  /// anew.
   [[nodiscard]] bool add(const Keyframe& keyframe, const Pose& T_map_sensor);
   /// Commits an event: `data` is a JSON object.
   [[nodiscard]] bool add_event(SensorTime stamp, std::string_view kind, std::string_view data);

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#include "slam/odometry_estimate.hpp"
+
+namespace glint::slam {
+
+std::string_view to_string(TrackingState state) {
+  switch (state) {
+    case TrackingState::kInit:
+      return "INIT";
+    case TrackingState::kTracking:
+      return "TRACKING";
+    case TrackingState::kDegraded:
+      return "DEGRADED";
+    case TrackingState::kLost:
+      return "LOST";
+    case TrackingState::kLocalizing:
+      return "LOCALIZING";
+    case TrackingState::kPaused:
+      return "PAUSED";
+  }
+  return "LOST";
+}
+
+}  // namespace glint::slam
