@@ -17,17 +17,19 @@ namespace glint {
 
 /// What became of everything that was pushed. Every packet and column is in exactly one of them.
 struct AssemblerCounters {
-  std::uint64_t packets = 0;          ///< Lidar packets accepted.
-  std::uint64_t bad_size = 0;         ///< Not the sensor's packet size.
-  std::uint64_t bad_type = 0;         ///< Not a lidar packet by its type field.
-  std::uint64_t bad_serial = 0;       ///< Another sensor's.
-  std::uint64_t bad_column = 0;       ///< Columns with measurement id >= W.
-  std::uint64_t late_packets = 0;     ///< For a scan that had already left.
+  std::uint64_t packets = 0;            ///< Lidar packets accepted.
+  std::uint64_t bad_size = 0;           ///< Not the sensor's packet size.
+  std::uint64_t bad_type = 0;           ///< Not a lidar packet by its type field.
+  std::uint64_t bad_serial = 0;         ///< Another sensor's.
+  std::uint64_t bad_column = 0;         ///< Columns with measurement id >= W.
+  std::uint64_t late_packets = 0;       ///< For a scan that had already left.
   std::uint64_t duplicate_packets = 0;  ///< All of whose columns were already there.
-  std::uint64_t missing_packets = 0;  ///< Never came, of scans that left.
-  std::uint64_t restarts = 0;         ///< Sensor restarts (init id changed).
-  std::uint64_t scans = 0;            ///< Scans that left.
-  std::uint64_t incomplete_scans = 0;
+  std::uint64_t missing_packets = 0;    ///< Never came, of scans that left.
+  std::uint64_t stray_packets = 0;      ///< Frame id ahead of what the packet's time allows.
+  std::uint64_t restarts = 0;  ///< Init id changed, or frame ids began anew for a scan's worth.
+  std::uint64_t scans = 0;     ///< Scans that left.
+  std::uint64_t incomplete_scans = 0;  ///< Left before every expected column had come.
+  std::uint64_t untaken_scans = 0;     ///< Nobody asked for them with next() in time.
 };
 
 struct AssemblerOptions {
