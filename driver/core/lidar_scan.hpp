@@ -35,8 +35,8 @@ struct Image {
 };
 
 /// One revolution of the sensor, STAGGERED: column m of every image was measured at column_time[m].
-/// Columns that never came or were invalid are zero in pixels; those that never came also in time
-/// and status. Images of channels that the profile lacks are empty. Value type.
+/// Columns that never came or were invalid are zero in pixels and time; those that never came also
+/// in status. Images of channels that the profile lacks are empty. Value type.
 struct LidarScan {
   LidarScan() = default;
   /// Allocates every image that the format's profile carries.
