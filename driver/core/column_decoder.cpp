@@ -29,39 +29,63 @@ std::uint32_t extract(const std::byte* pixel) {
   return bits * static_cast<std::uint32_t>(kField.scale);
 }
 
-template <PixelField kField, class T>
-void decode_row(const std::byte* pixel, std::size_t stride, int count, T* out) {
+// One channel of kCount neighbouring pixels of a row. They are gathered before they are stored, for
+// bytes may alias anything: a store among the loads would keep the compiler from reordering them.
+template <PixelField kField, int kCount, class T>
+void decode_row(const std::byte* pixel, std::size_t stride, T* out) {
   if constexpr (kField.present()) {
-    for (int c = 0; c < count; ++c, pixel += stride)
-      out[c] = static_cast<T>(extract<kField>(pixel));
+    std::array<T, kCount> row;
+    for (T& value : row) {
+      value = static_cast<T>(extract<kField>(pixel));
+      pixel += stride;
+    }
+    std::memcpy(out, row.data(), sizeof row);
   }
+}
+
+// Asks for a block at one go; in the order of rows its lines would be missed one after another.
+void prefetch(const std::byte* from, std::size_t bytes) {
+  constexpr std::size_t kCacheLineBytes = 64;
+  for (std::size_t i = 0; i < bytes; i += kCacheLineBytes) __builtin_prefetch(from + i);
 }
 
 // Rows outside, columns inside: a packet's columns lie in the cache, so it is the stores into the
 // scan that should be contiguous.
+template <std::size_t kProfile, int kCount>
+void decode_block(const PacketFormat& format, const std::byte* pixel, int first_column,
+                  LidarScan& scan) {
+  constexpr const ProfileLayout& kLayout = kProfileTable[kProfile];
+  const std::size_t stride = format.column_bytes;
+  auto at = static_cast<std::size_t>(first_column);
+  const auto decode = [&]<Channel kChannel, class T>(Image<T>& image) {
+    decode_row<kLayout.field(kChannel), kCount>(pixel, stride, image.data.data() + at);
+  };
+  prefetch(pixel, kCount * stride);
+  for (int r = 0; r < format.pixels_per_column; ++r) {
+    decode.template operator()<Channel::kRange>(scan.range_mm);
+    decode.template operator()<Channel::kSignal>(scan.signal);
+    decode.template operator()<Channel::kReflectivity>(scan.reflectivity);
+    decode.template operator()<Channel::kNearIr>(scan.near_ir);
+    decode.template operator()<Channel::kRange2>(scan.range2_mm);
+    decode.template operator()<Channel::kSignal2>(scan.signal2);
+    decode.template operator()<Channel::kReflectivity2>(scan.reflectivity2);
+    pixel += kLayout.pixel_bytes;
+    at += static_cast<std::size_t>(format.columns_per_frame);
+  }
+}
+
+// Nearly all sensors send this many columns a packet; a constant lets the compiler unroll.
+constexpr int kUsualColumns = 16;
+
 template <std::size_t kProfile>
 void decode_columns(const PacketFormat& format, const std::byte* pixels, int count,
                     int first_column, LidarScan& scan) {
-  constexpr ProfileLayout kLayout = kProfileTable[kProfile];
-  const std::size_t stride = format.column_bytes;
-  const std::byte* pixel = pixels;
-  auto at = static_cast<std::size_t>(first_column);
-  for (int r = 0; r < format.pixels_per_column; ++r) {
-    decode_row<kLayout.field(Channel::kRange)>(pixel, stride, count,
-                                               scan.range_mm.data.data() + at);
-    decode_row<kLayout.field(Channel::kSignal)>(pixel, stride, count, scan.signal.data.data() + at);
-    decode_row<kLayout.field(Channel::kReflectivity)>(pixel, stride, count,
-                                                      scan.reflectivity.data.data() + at);
-    decode_row<kLayout.field(Channel::kNearIr)>(pixel, stride, count,
-                                                scan.near_ir.data.data() + at);
-    decode_row<kLayout.field(Channel::kRange2)>(pixel, stride, count,
-                                                scan.range2_mm.data.data() + at);
-    decode_row<kLayout.field(Channel::kSignal2)>(pixel, stride, count,
-                                                 scan.signal2.data.data() + at);
-    decode_row<kLayout.field(Channel::kReflectivity2)>(pixel, stride, count,
-                                                       scan.reflectivity2.data.data() + at);
-    pixel += kLayout.pixel_bytes;
-    at += static_cast<std::size_t>(format.columns_per_frame);
+  if (count == kUsualColumns) {
+    decode_block<kProfile, kUsualColumns>(format, pixels, first_column, scan);
+    return;
+  }
+  for (int c = 0; c < count; ++c, pixels += format.column_bytes) {
+    decode_block<kProfile, 1>(format, pixels, first_column + c, scan);
   }
 }
 
