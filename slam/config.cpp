@@ -14,7 +14,7 @@ SlamConfig preset_config(const std::string& name) {
   if (name == "paper") {
     config.preset = "paper";
     config.deskew = false;
-    config.orb_levels = 8;
+    config.orb_upright = false;
     return config;
   }
   throw InputError(fmt::format("unknown preset '{}': choose 'paper' or 'full'", name));

@@ -23,11 +23,15 @@ struct SlamConfig {
   /// rigid, its pose is that of its middle and is extrapolated to its end.
   bool deskew = true;
 
-  /// ORB: most keypoints, pyramid levels, scale between levels, FAST threshold.
+  /// ORB: most keypoints, pyramid levels, scale between levels, FAST threshold. Two levels: on 64 rows
+  /// the descriptor's 31-pixel patch fits no further one, and coarse keypoints blur the motion.
   int orb_features = 1000;
-  int orb_levels = 4;
+  int orb_levels = 2;
   double orb_scale = 1.2;
   int orb_fast_threshold = 20;
+  /// Descriptors are not turned into the corner's direction: a sensor that does not roll much between
+  /// two scans matches better, as direction is then part of what is compared.
+  bool orb_upright = true;
 
   /// Largest Hamming distance of a match, share of the best ones kept, and at most how many.
   int match_max_distance = 64;
@@ -35,7 +39,7 @@ struct SlamConfig {
   int match_max = 200;
 
   /// Registration: inlier gate of the robust start, and scale of the Huber kernel, m.
-  double registration_inlier_m = 0.3;
+  double registration_inlier_m = 0.15;
   double registration_huber_m = 0.1;
   /// A registration with fewer inliers is a failure.
   int registration_min_inliers = 12;

@@ -28,6 +28,7 @@ struct FeatureExtractor::Impl {
       : lut(std::move(table)),
         shift(info.pixel_shift_by_row),
         row_factor((kFewestRows + info.pixels_per_column - 1) / info.pixels_per_column),
+        upright(config.orb_upright),
         orb(cv::ORB::create(config.orb_features, static_cast<float>(config.orb_scale),
                             config.orb_levels, kEdge_px, 0, 2, cv::ORB::HARRIS_SCORE, kPatch_px,
                             config.orb_fast_threshold)) {
@@ -37,6 +38,7 @@ struct FeatureExtractor::Impl {
   const std::shared_ptr<const XyzLut> lut;
   const std::vector<int> shift;
   const int row_factor;  // By how much rows are enlarged; 1 from 64 beams on.
+  const bool upright;
   const cv::Ptr<cv::ORB> orb;
   cv::Mat enlarged;
   std::vector<cv::KeyPoint> keypoints;
@@ -60,7 +62,11 @@ void FeatureExtractor::extract(const LidarScan& scan, const ScanImages& images,
     cv::resize(image, my.enlarged, {cols, rows * my.row_factor}, 0, 0, cv::INTER_LINEAR);
     image = my.enlarged;
   }
-  my.orb->detectAndCompute(image, cv::noArray(), my.keypoints, my.descriptors);
+  my.orb->detect(image, my.keypoints);
+  if (my.upright) {
+    for (cv::KeyPoint& keypoint : my.keypoints) keypoint.angle = 0.0F;
+  }
+  my.orb->compute(image, my.keypoints, my.descriptors);
 
   features.keypoints.clear();
   features.descriptors.clear();

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#include "daemon/cli/replay_run.hpp"
+
+#include "daemon/steady_clock.hpp"
+#include "slam/frontend.hpp"
+
+namespace glint::cli {
+namespace {
+
+// Scans whose images go into the report: the first, and then each time the number doubles, so that
+// whatever its length a replay leaves about ten.
+bool is_sample(std::uint64_t scan) { return (scan & (scan - 1)) == 0; }
+constexpr std::uint64_t kFirstSample = 8;
+
+class Replay {
+ public:
+  Replay(const SensorInfo& info, const ReplayOptions& options)
+      : options_(options),
+        clock_(daemon::stage_clock()),
+        assembler_(info),
+        frontend_(info, options.slam, clock_),
+        backend_(info, options.slam, options.session_file, clock_) {}
+
+  ReplayResult run(PacketSource& source) {
+    const std::int64_t start_ns = clock_.monotonic_ns();
+    RawPacket packet;
+    while (going_) {
+      const SourceStatus status = source.read(packet);
+      if (status == SourceStatus::kIdle) continue;
+      if (status == SourceStatus::kError) result_.source_error = source.error();
+      if (status != SourceStatus::kPacket) break;
+      decode(packet);
+      process_scans();
+    }
+    if (going_) {
+      assembler_.flush();
+      process_scans();
+    }
+    result_.map = backend_.snapshot();
+    result_.correction = backend_.correction();
+    result_.packets = assembler_.counters();
+    result_.store_failures = backend_.store_failures();
+    result_.store_error = backend_.store_error();
+    result_.wall_s = static_cast<double>(clock_.monotonic_ns() - start_ns) * kSecondsPerNs;
+    return std::move(result_);
+  }
+
+ private:
+  void decode(const RawPacket& packet) {
+    const slam::StageTimer timer(clock_, decode_times_, slam::Stage::kDecode);
+    // IMU packets and strangers are counted by the assembler and the source.
+    static_cast<void>(assembler_.push(packet.bytes));
+  }
+
+  void process_scans() {
+    while (const LidarScan* scan = going_ ? assembler_.next() : nullptr) process(*scan);
+  }
+
+  void process(const LidarScan& scan) {
+    result_.estimates.push_back(frontend_.process(scan));
+    slam::StageTimes times = frontend_.stage_times();
+    constexpr auto kDecode = static_cast<std::size_t>(slam::Stage::kDecode);
+    times.wall_ns[kDecode] = decode_times_.wall_ns[kDecode];
+    times.cpu_ns[kDecode] = decode_times_.cpu_ns[kDecode];
+    decode_times_ = {};
+    if (const auto keyframe = frontend_.take_keyframe()) {
+      backend_.process(*keyframe);
+      constexpr auto kBackend = static_cast<std::size_t>(slam::Stage::kBackend);
+      times.wall_ns[kBackend] = backend_.last_wall_ns();
+      times.cpu_ns[kBackend] = backend_.last_cpu_ns();
+    }
+    result_.stages.add(times);
+    const std::uint64_t scans = result_.estimates.size();
+    if (scans >= kFirstSample && is_sample(scans)) {
+      result_.sample_images.push_back(frontend_.images());
+    }
+    const bool wanted = !options_.on_scan || options_.on_scan(scans);
+    result_.interrupted = !wanted;
+    going_ = wanted && (options_.max_scans == 0 || scans < options_.max_scans);
+  }
+
+  const ReplayOptions& options_;
+  const Clock clock_;
+  ScanAssembler assembler_;
+  slam::Frontend frontend_;
+  slam::Backend backend_;
+  slam::StageTimes decode_times_;
+  ReplayResult result_;
+  bool going_ = true;
+};
+
+}  // namespace
+
+ReplayResult run_replay(PacketSource& source, const SensorInfo& info,
+                        const ReplayOptions& options) {
+  return Replay(info, options).run(source);
+}
+
+}  // namespace glint::cli

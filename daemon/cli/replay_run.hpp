@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "daemon/cli/stage_statistics.hpp"
+#include "driver/core/packet_source.hpp"
+#include "driver/core/scan_assembler.hpp"
+#include "driver/core/sensor_info.hpp"
+#include "slam/backend.hpp"
+#include "slam/config.hpp"
+#include "slam/odometry_estimate.hpp"
+#include "slam/scan_images.hpp"
+
+namespace glint::cli {
+
+/// All that a replay found out.
+struct ReplayResult {
+  std::vector<slam::OdometryEstimate> estimates;  ///< One for each scan, in order.
+  std::vector<slam::ScanImages> sample_images;    ///< A few scans' images, for the report.
+  StageStatistics stages;
+  std::shared_ptr<const slam::MapSnapshot> map;
+  slam::MapCorrection correction;
+  AssemblerCounters packets;
+  std::uint64_t store_failures = 0;
+  std::string store_error;
+  std::string source_error;  ///< Why the capture could not be read to its end; empty if it was.
+  bool interrupted = false;
+  double wall_s = 0.0;
+};
+
+struct ReplayOptions {
+  slam::SlamConfig slam;
+  std::filesystem::path session_file;
+  std::uint64_t max_scans = 0;  ///< 0: all.
+  /// Called after each scan with the number of scans so far; false ends the replay.
+  std::function<bool(std::uint64_t)> on_scan;
+};
+
+/// Runs the pipeline over a source, one step after the other: packets -> scans -> poses -> map.
+/// The result depends on the packets only, not on time. @throws InputError from set-up.
+ReplayResult run_replay(PacketSource& source, const SensorInfo& info, const ReplayOptions& options);
+
+}  // namespace glint::cli
