@@ -38,6 +38,13 @@ class BoundedQueue {
     return put(item, lock);
   }
 
+  /// Swaps `item` in if there is room. False when full or closed.
+  bool try_push(T& item) {
+    std::unique_lock lock(mutex_);
+    if (size_ == slots_.size()) return false;
+    return put(item, lock);
+  }
+
   enum class PopResult { kItem, kTimeout, kClosed };
 
   /// Swaps the oldest element out. After close() what is left is still handed out, then kClosed.

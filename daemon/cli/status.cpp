@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+//
+// glint status: how the daemon fares.
+#include <fmt/format.h>
+
+#include <iostream>
+#include <memory>
+
+#include "daemon/cli/client_command.hpp"
+#include "daemon/cli/command.hpp"
+
+namespace glint::cli {
+namespace {
+
+using daemon::Json;
+
+/// Counters that are worth a line only when something happened.
+void print_losses(const Json& counters) {
+  std::string text;
+  for (const char* name :
+       {"kernel_drops", "queue_drops", "missing_packets", "late_packets", "duplicate_packets",
+        "bad_size", "bad_type", "bad_serial", "bad_columns", "incomplete_scans", "paused_scans",
+        "dropped_keyframes", "store_failures"}) {
+    const auto value = counters.value(name, std::uint64_t{0});
+    if (value > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, value);
+  }
+  fmt::print("losses     {}\n", text.empty() ? "none" : text);
+}
+
+void print_stages(const Json& stages) {
+  if (stages.empty()) return;
+  fmt::print("stage ms   {:<18}{:>9}{:>9}{:>9}\n", "", "last", "mean", "max");
+  for (const auto& [name, ms] : stages.items()) {
+    fmt::print("           {:<18}{:>9.2f}{:>9.2f}{:>9.2f}\n", name, ms["last"].get<double>(),
+               ms["mean"].get<double>(), ms["max"].get<double>());
+  }
+}
+
+void print(const Json& status) {
+  const Json& counters = status["counters"];
+  const Json& map = status["map"];
+  fmt::print("state      {}\n", status["state"].get<std::string>());
+  fmt::print(
+      "sensor     {} ({}){}\n", status["sensor_state"].get<std::string>(),
+      status["source"].get<std::string>(),
+      status.contains("sensor_error") ? ": " + status["sensor_error"].get<std::string>() : "");
+  if (status.contains("age_ms")) {
+    fmt::print("last pose  {} s, {:.0f} ms ago\n", status["t"].get<std::string>(),
+               status["age_ms"].get<double>());
+  }
+  fmt::print("packets    {} lidar, {} IMU; {} scans, {} poses\n",
+             counters["lidar_packets"].get<std::uint64_t>(),
+             counters["imu_packets"].get<std::uint64_t>(), counters["scans"].get<std::uint64_t>(),
+             counters["poses"].get<std::uint64_t>());
+  print_losses(counters);
+  fmt::print("map        {} points in {} tiles, {} keyframes, epoch {}\n",
+             map["points"].get<std::uint64_t>(), map["tiles"].get<std::uint64_t>(),
+             map["keyframes"].get<std::uint64_t>(), status["map_epoch"].get<int>());
+  print_stages(status["stage_ms"]);
+  const auto session = status["session_file"].get<std::string>();
+  fmt::print("session    {}\n", session.empty() ? "not kept" : session);
+  fmt::print("daemon     glintd {}, up {:.0f} s, {} clients, {:.0f} MB\n",
+             status["version"].get<std::string>(), status["uptime_s"].get<double>(),
+             status["clients"].get<int>(), status["rss_mb"].get<double>());
+}
+
+}  // namespace
+
+void add_status(CLI::App& app) {
+  auto options = std::make_shared<ClientOptions>();
+  CLI::App* sub = app.add_subcommand("status", "Ask the daemon how it fares");
+  add_client_options(*sub, *options);
+  sub->callback([options] {
+    with_client(*options, [&](daemon::Client& client) {
+      const Json status = client.call("get_status");
+      if (options->json) {
+        std::cout << status.dump() << '\n';
+      } else {
+        print(status);
+      }
+    });
+  });
+}
+
+}  // namespace glint::cli

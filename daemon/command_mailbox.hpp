@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#pragma once
+
+#include <mutex>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "slam/backend.hpp"
+
+namespace glint::daemon {
+
+struct PauseCommand {};
+struct ResumeCommand {};
+/// Forget the odometry, keep the map.
+struct ResetOdometryCommand {};
+
+/// What others tell odometry; applied between two scans.
+using Command =
+    std::variant<PauseCommand, ResumeCommand, ResetOdometryCommand, slam::MapCorrection>;
+
+/// Commands to the odometry thread, in order of arrival. Thread-safe; nobody waits.
+class CommandMailbox {
+ public:
+  void post(Command command) {
+    const std::lock_guard lock(mutex_);
+    commands_.push_back(std::move(command));
+  }
+
+  /// Everything posted since the last call.
+  [[nodiscard]] std::vector<Command> take() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(commands_, {});
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<Command> commands_;
+};
+
+}  // namespace glint::daemon

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#include "daemon/config.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <iterator>
+
+namespace glint::daemon {
+namespace {
+
+using slam::SlamConfig;
+
+/// The member `Member` of the group `Group`.
+template <auto Group, auto Member>
+auto at(Config& config) -> decltype((config.*Group.*Member)) {
+  return config.*Group.*Member;
+}
+
+constexpr double kMaxPort = 65535.0;
+
+const std::array kKeys{
+    ConfigKey{"sensor.metadata_file", &at<&Config::sensor, &Config::Sensor::metadata_file>, 0, 0,
+              "", "",
+              "Metadata JSON of the sensor; needed with a live sensor, --meta goes before it."},
+    ConfigKey{"sensor.source_address", &at<&Config::sensor, &Config::Sensor::source_address>, 0, 0,
+              "", "", "IP address of the sensor: packets from others are discarded. Empty: any."},
+    ConfigKey{"sensor.bind_address", &at<&Config::sensor, &Config::Sensor::bind_address>, 0, 0, "",
+              "", "Address of the network interface to listen on. Empty: all of them."},
+    ConfigKey{"sensor.lidar_port", &at<&Config::sensor, &Config::Sensor::lidar_port>, 0, kMaxPort,
+              "", "", "UDP port of lidar packets. 0: the one of the metadata."},
+    ConfigKey{"sensor.imu_port", &at<&Config::sensor, &Config::Sensor::imu_port>, 0, kMaxPort, "",
+              "", "UDP port of IMU packets. 0: the one of the metadata."},
+    ConfigKey{"sensor.rcvbuf_bytes", &at<&Config::sensor, &Config::Sensor::rcvbuf_bytes>, 65536,
+              1 << 30, "bytes", "",
+              "Receive buffer asked of the kernel; net.core.rmem_max must allow it."},
+
+    ConfigKey{"mount.T_base_sensor", &at<&Config::mount, &Config::Mount::T_base_sensor>, -1000,
+              1000, "m", "",
+              "Pose of the sensor on the robot: [x, y, z, qx, qy, qz, qw], z up, quaternion of "
+              "length 1."},
+
+    ConfigKey{"slam.preset", &at<&Config::slam, &SlamConfig::preset>, 0, 0, "", "paper|full",
+              "Values that the other slam keys start from."},
+    ConfigKey{"slam.min_completeness", &at<&Config::slam, &SlamConfig::min_completeness>, 0, 1, "",
+              "", "Scans with a smaller share of their columns are not used."},
+    ConfigKey{"slam.degraded_completeness", &at<&Config::slam, &SlamConfig::degraded_completeness>,
+              0, 1, "", "", "Scans with a smaller share of their columns make the state DEGRADED."},
+    ConfigKey{"slam.min_range_m", &at<&Config::slam, &SlamConfig::min_range_m>, 0, 100, "m", "",
+              "Returns nearer than this are the robot itself."},
+    ConfigKey{"slam.deskew", &at<&Config::slam, &SlamConfig::deskew>, 0, 0, "", "",
+              "Bring the points of a scan to its end by the motion of the last scan."},
+    ConfigKey{"slam.orb_features", &at<&Config::slam, &SlamConfig::orb_features>, 50, 10000, "", "",
+              "Most keypoints taken from an image."},
+    ConfigKey{"slam.orb_levels", &at<&Config::slam, &SlamConfig::orb_levels>, 1, 8, "", "",
+              "Levels of the image pyramid."},
+    ConfigKey{"slam.orb_scale", &at<&Config::slam, &SlamConfig::orb_scale>, 1.05, 2, "", "",
+              "Scale between two levels of the pyramid."},
+    ConfigKey{"slam.orb_fast_threshold", &at<&Config::slam, &SlamConfig::orb_fast_threshold>, 1,
+              200, "", "", "Contrast of a corner, grey levels of 255."},
+    ConfigKey{"slam.match_max_distance", &at<&Config::slam, &SlamConfig::match_max_distance>, 1,
+              256, "bits", "", "Largest Hamming distance of a match."},
+    ConfigKey{"slam.match_keep_share", &at<&Config::slam, &SlamConfig::match_keep_share>, 0.01, 1,
+              "", "", "Share of the best matches that is kept."},
+    ConfigKey{"slam.match_max", &at<&Config::slam, &SlamConfig::match_max>, 10, 10000, "", "",
+              "Most matches kept."},
+    ConfigKey{"slam.registration_inlier_m", &at<&Config::slam, &SlamConfig::registration_inlier_m>,
+              0.001, 10, "m", "", "Inlier gate of the registration's robust start."},
+    ConfigKey{"slam.registration_huber_m", &at<&Config::slam, &SlamConfig::registration_huber_m>,
+              0.001, 10, "m", "", "Scale of the registration's Huber kernel."},
+    ConfigKey{"slam.registration_min_inliers",
+              &at<&Config::slam, &SlamConfig::registration_min_inliers>, 3, 1000, "", "",
+              "A registration with fewer inliers is a failure."},
+    ConfigKey{"slam.max_speed_mps", &at<&Config::slam, &SlamConfig::max_speed_mps>, 0.1, 200, "m/s",
+              "", "Largest speed believed."},
+    ConfigKey{"slam.max_turn_rate_radps", &at<&Config::slam, &SlamConfig::max_turn_rate_radps>, 0.1,
+              50, "rad/s", "", "Largest turn rate believed."},
+    ConfigKey{"slam.max_coasted_scans", &at<&Config::slam, &SlamConfig::max_coasted_scans>, 0, 100,
+              "scans", "",
+              "Scans bridged by constant velocity (DEGRADED) before the state is LOST."},
+    ConfigKey{"slam.keyframe_distance_m", &at<&Config::slam, &SlamConfig::keyframe_distance_m>,
+              0.01, 100, "m", "", "A keyframe is made after this distance."},
+    ConfigKey{"slam.keyframe_angle_rad", &at<&Config::slam, &SlamConfig::keyframe_angle_rad>, 0.01,
+              3.2, "rad", "", "A keyframe is made after this turn."},
+    ConfigKey{"slam.keyframe_min_matches", &at<&Config::slam, &SlamConfig::keyframe_min_matches>, 0,
+              10000, "", "", "A keyframe is made when fewer matches remain."},
+    ConfigKey{"slam.map_voxel_m", &at<&Config::slam, &SlamConfig::map_voxel_m>, 0, 10, "m", "",
+              "Edge of the map's voxels, one point is kept in each. 0: by the first scan's median "
+              "range."},
+    ConfigKey{"slam.map_max_points", &at<&Config::slam, &SlamConfig::map_max_points>, 1000, 1e9, "",
+              "", "Most points kept in the map; at the limit it stops growing, tracking goes on."},
+    ConfigKey{"slam.map_column_step", &at<&Config::slam, &SlamConfig::map_column_step>, 1, 64, "",
+              "", "Every n-th column of a keyframe goes into the map."},
+
+    ConfigKey{"server.listen", &at<&Config::server, &Config::Server::listen>, 0, 0, "", "",
+              "Address and TCP port of the server, a loopback address. Empty: no TCP."},
+    ConfigKey{
+        "server.unix_socket", &at<&Config::server, &Config::Server::unix_socket>, 0, 0, "", "",
+        "Path of the Unix socket. auto: glintd.sock in systemd's RuntimeDirectory, else none."},
+    ConfigKey{"server.max_clients", &at<&Config::server, &Config::Server::max_clients>, 1, 1000, "",
+              "", "Clients served at a time; further ones get an error."},
+    ConfigKey{"server.idle_timeout_s", &at<&Config::server, &Config::Server::idle_timeout_s>, 1,
+              1e6, "s", "", "A client without a request or a subscription for so long is closed."},
+    ConfigKey{"server.stall_timeout_s", &at<&Config::server, &Config::Server::stall_timeout_s>, 1,
+              1e6, "s", "",
+              "A client that takes nothing of what waits for it for so long is closed."},
+    ConfigKey{"server.outbox_bytes", &at<&Config::server, &Config::Server::outbox_bytes>, 2 << 20,
+              1 << 30, "bytes", "",
+              "Replies that may wait for a client; one that lets more pile up is closed."},
+
+    ConfigKey{"state.directory", &at<&Config::state, &Config::State::directory>, 0, 0, "", "",
+              "Where session files go. auto: systemd's StateDirectory, else none. Empty: none."},
+    ConfigKey{"state.trajectory_poses", &at<&Config::state, &Config::State::trajectory_poses>, 1000,
+              1e8, "poses", "",
+              "Latest poses kept for get_trajectory and get_pose at_ns, some 150 bytes each."},
+
+    ConfigKey{"log.level", &at<&Config::log, &Config::Log::level>, 0, 0, "",
+              "debug|info|warn|error", "Least severe message that is logged."},
+};
+
+Json value_json(const ConfigKey& key, Config& config) {
+  return std::visit(
+      [&](auto field) {
+        const auto& value = field(config);
+        if constexpr (std::is_same_v<decltype(value), const Pose&>) {
+          const auto& [q, t] = value;
+          return Json{t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()};
+        } else {
+          return Json(value);
+        }
+      },
+      key.field);
+}
+
+/// A value as TOML has it: JSON's scalars and arrays are its own.
+std::string toml_value(const Json& value) {
+  if (!value.is_array()) return value.dump();
+  std::string list;
+  for (const Json& item : value) list += (list.empty() ? "[" : ", ") + item.dump();
+  return list + "]";
+}
+
+/// A number as a user would write it: 0.5, 1e+06, 3.
+std::string plain(double value) {
+  return std::abs(value) < 1e15 && value == std::floor(value) ? fmt::format("{:.0f}", value)
+                                                              : fmt::format("{}", value);
+}
+
+std::string range_comment(const ConfigKey& key) {
+  std::string text;
+  if (!key.choices.empty()) text += fmt::format(" One of {}.", key.choices);
+  if (key.min < key.max) text += fmt::format(" Range {} to {}", plain(key.min), plain(key.max));
+  if (key.min < key.max) text += key.unit.empty() ? "." : fmt::format(" {}.", key.unit);
+  return text;
+}
+
+}  // namespace
+
+std::span<const ConfigKey> config_keys() { return kKeys; }
+
+Json to_json(const Config& config) {
+  Config copy = config;  // Accessors give references to what is not const.
+  Json out = Json::object();
+  for (const ConfigKey& key : kKeys) {
+    const auto dot = key.name.find('.');
+    out[std::string(key.name.substr(0, dot))][std::string(key.name.substr(dot + 1))] =
+        value_json(key, copy);
+  }
+  return out;
+}
+
+std::string to_toml(const Config& config, std::string_view group) {
+  Config copy = config;
+  std::string out;
+  std::string_view open_group;
+  for (const ConfigKey& key : kKeys) {
+    const auto dot = key.name.find('.');
+    const std::string_view key_group = key.name.substr(0, dot);
+    if (!group.empty() && key_group != group) continue;
+    if (key_group != open_group) out += fmt::format("{}[{}]\n", out.empty() ? "" : "\n", key_group);
+    open_group = key_group;
+    fmt::format_to(std::back_inserter(out), "# {}{}\n{} = {}\n", key.doc, range_comment(key),
+                   key.name.substr(dot + 1), toml_value(value_json(key, copy)));
+  }
+  return out;
+}
+
+}  // namespace glint::daemon

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "driver/core/error.hpp"
+#include "driver/core/pose.hpp"
+#include "slam/config.hpp"
+
+namespace glint::daemon {
+
+/// JSON with its keys in the order in which they were written.
+using Json = nlohmann::ordered_json;
+
+/// A configuration that cannot be used: the message names file, line, key and allowed range.
+/// `glintd` exits with 78 on it, so that systemd does not start it again and again.
+class ConfigError : public InputError {
+ public:
+  using InputError::InputError;
+};
+
+/// Everything that can be configured; the defaults are those of the members. Value type.
+/// What each key does, its unit and its range stand in the table of config.cpp.
+struct Config {
+  struct Sensor {
+    std::string metadata_file;
+    std::string source_address;
+    std::string bind_address;
+    int lidar_port = 0;
+    int imu_port = 0;
+    int rcvbuf_bytes = 8 << 20;
+  };
+  struct Mount {
+    Pose T_base_sensor;
+  };
+  struct Server {
+    std::string listen = "127.0.0.1:7788";
+    std::string unix_socket = "auto";
+    int max_clients = 32;
+    double idle_timeout_s = 900.0;
+    double stall_timeout_s = 180.0;
+    int outbox_bytes = 8 << 20;
+  };
+  struct State {
+    std::string directory = "auto";
+    int trajectory_poses = 200'000;
+  };
+  struct Log {
+    std::string level = "info";
+  };
+
+  Sensor sensor;
+  Mount mount;
+  slam::SlamConfig slam;
+  Server server;
+  State state;
+  Log log;
+};
+
+/// One row of the table of keys.
+struct ConfigKey {
+  using Accessor = std::variant<bool& (*)(Config&), int& (*)(Config&), double& (*)(Config&),
+                                std::string& (*)(Config&), Pose& (*)(Config&)>;
+  std::string_view name;  ///< Dotted: "slam.orb_features".
+  Accessor field;         ///< The member; its type is the key's type.
+  double min = 0.0;       ///< Smallest and largest value of a number.
+  double max = 0.0;
+  std::string_view unit;     ///< Empty for none.
+  std::string_view choices;  ///< Allowed strings, separated by "|"; empty for any.
+  std::string_view doc;      ///< One sentence for the user.
+};
+
+/// Every key there is, in the order of the shipped file.
+std::span<const ConfigKey> config_keys();
+
+/// Reads a TOML file over `config`; slam.preset is applied before the other slam keys.
+/// @throws ConfigError naming file and line for an unknown key (with the nearest known one), a
+/// wrong type or a value out of range.
+void load_config(const std::filesystem::path& file, Config& config);
+
+/// Applies one `key=value`, the value as in TOML; a value that is no TOML is taken as a string.
+/// Setting slam.preset replaces every slam value. @throws ConfigError.
+void apply_setting(Config& config, std::string_view setting);
+
+/// Applies several settings in order, slam.preset first. @throws ConfigError.
+void apply_settings(Config& config, std::span<const std::string> settings);
+
+/// The effective configuration: an object for each group of keys.
+Json to_json(const Config& config);
+
+/// The configuration as a TOML file in which each key carries what it does, its unit and its range.
+/// `group` restricts it to the keys of one group, e.g. "slam".
+std::string to_toml(const Config& config, std::string_view group = {});
+
+}  // namespace glint::daemon

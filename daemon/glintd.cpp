@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+//
+// glintd: serves pose and map of a live sensor or a capture.
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <iostream>
+
+#include "daemon/config.hpp"
+#include "daemon/input.hpp"
+#include "daemon/log.hpp"
+#include "daemon/service.hpp"
+#include "daemon/version.hpp"
+
+namespace glint::daemon {
+namespace {
+
+constexpr int kFailed = 1;
+constexpr int kUsage = 2;
+constexpr int kBadConfig = 78;  // EX_CONFIG: systemd is told not to start the daemon again.
+constexpr const char* kDefaultConfig = "/etc/glint/glint.toml";
+
+struct Options {
+  std::string config_file = kDefaultConfig;
+  bool config_given = false;
+  bool check_config = false;
+  bool print_config = false;
+  std::vector<std::string> settings;
+  InputOptions input;
+};
+
+/// Defaults, then the file, then --set. The default file need not exist.
+Config read_config(const Options& options) {
+  Config config;
+  if (options.config_given || std::filesystem::exists(options.config_file)) {
+    load_config(options.config_file, config);
+  }
+  apply_settings(config, options.settings);
+  return config;
+}
+
+int serve(const Options& options) {
+  const Config config = read_config(options);
+  if (options.print_config) {
+    std::cout << to_toml(config);
+    return 0;
+  }
+  if (options.check_config) {
+    std::cout << "glintd: the configuration is good\n";
+    return 0;
+  }
+  set_up_logging(config.log.level);
+  spdlog::info("glintd {}", kVersion);
+  Service service(config, open_input(options.input, config),
+                  [&options] { return read_config(options); });
+  return service.run();
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{"glintd: pose and map from an Ouster lidar, over TCP/JSON.", "glintd"};
+  Options options;
+  app.set_version_flag("--version", std::string("glintd ") + kVersion);
+  const auto* config =
+      app.add_option("--config", options.config_file, "Configuration file")->capture_default_str();
+  app.add_flag("--check-config", options.check_config, "Check the configuration and exit");
+  app.add_flag("--print-config", options.print_config,
+               "Print every key with its value, unit and range, and exit");
+  app.add_option("--set", options.settings, "Set one value: key=value; may be given again");
+  app.add_option("--source", options.input.source, "udp or pcap:FILE")->capture_default_str();
+  app.add_option("--meta", options.input.metadata, "Sensor metadata (JSON)");
+  app.add_option("--rate", options.input.rate, "Of a capture: max or a multiple of its speed")
+      ->capture_default_str();
+  try {
+    app.parse(argc, argv);
+    options.config_given = config->count() > 0;
+    return serve(options);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kUsage;
+  } catch (const ConfigError& error) {
+    std::cerr << "glintd: " << error.what() << '\n';
+    return kBadConfig;
+  } catch (const std::exception& error) {
+    std::cerr << "glintd: " << error.what() << '\n';
+    return kFailed;
+  }
+}
+
+}  // namespace
+}  // namespace glint::daemon
+
+int main(int argc, char** argv) { return glint::daemon::run(argc, argv); }

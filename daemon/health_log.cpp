@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#include "daemon/health_log.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include "daemon/protocol_status.hpp"
+
+namespace glint::daemon {
+
+void HealthLog::look(const RuntimeStatus& status, std::int64_t now_ns,
+                     std::int64_t scan_period_ns) {
+  if (status.source != source_) {
+    source_ = status.source;
+    spdlog::info("sensor: {}{}{}", to_string(source_), status.source_error.empty() ? "" : ": ",
+                 status.source_error);
+  }
+  const auto tracking = client_state(*status.snapshot, now_ns, scan_period_ns);
+  if (tracking != tracking_ && limiter_.allow("tracking", now_ns)) {
+    tracking_ = tracking;
+    spdlog::info("tracking: {}", slam::to_string(tracking));
+  }
+  const AssemblerCounters& packets = status.snapshot->packets;
+  look_at_counter(
+      "packets dropped by the kernel, its receive buffer was full (raise "
+      "net.core.rmem_max)",
+      status.kernel_drops, now_ns);
+  look_at_counter("packets dropped, odometry was too slow", status.packets.dropped, now_ns);
+  look_at_counter("packets that never came", packets.missing_packets, now_ns);
+  look_at_counter("packets that came too late", packets.late_packets, now_ns);
+  look_at_counter("datagrams of another size than the sensor's packets", packets.bad_size, now_ns);
+  look_at_counter("datagrams of another type than lidar packets", packets.bad_type, now_ns);
+  look_at_counter("packets of another sensor", packets.bad_serial, now_ns);
+  look_at_counter("keyframes dropped, the back end was too slow",
+                  status.snapshot->dropped_keyframes, now_ns);
+  look_at_counter("keyframes missing in the session file (" + status.map->store_error + ")",
+                  status.map->store_failures, now_ns);
+}
+
+void HealthLog::look_at_counter(const std::string& what, std::uint64_t value, std::int64_t now_ns) {
+  std::uint64_t& logged = logged_[what];
+  if (value <= logged || !limiter_.allow(what, now_ns)) return;
+  spdlog::warn("{} {} ({} in all)", value - logged, what, value);
+  logged = value;
+}
+
+}  // namespace glint::daemon

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#include "daemon/input.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <ctime>
+
+#include "daemon/replay_pacer.hpp"
+#include "daemon/server.hpp"
+#include "driver/udp_source.hpp"
+#include "pcap/pcap_source.hpp"
+
+namespace glint::daemon {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr std::string_view kPcapPrefix = "pcap:";
+
+/// --meta, else the configured file, else for a capture STEM.json or metadata.json beside it.
+fs::path metadata_file(const InputOptions& options, const Config& config, const fs::path& capture) {
+  if (!options.metadata.empty()) return options.metadata;
+  if (!config.sensor.metadata_file.empty()) return config.sensor.metadata_file;
+  if (capture.empty()) {
+    throw ConfigError(
+        "a live sensor needs its metadata: save http://SENSOR/api/v1/sensor/metadata to a file and "
+        "name it with sensor.metadata_file or --meta");
+  }
+  fs::path stem = capture;
+  stem.replace_extension(".json");
+  const fs::path folder = capture.parent_path() / "metadata.json";
+  for (const fs::path& file : {stem, folder}) {
+    if (fs::exists(file)) return file;
+  }
+  throw ConfigError(
+      fmt::format("there is no metadata for {}: neither {} nor {}; name it with --meta",
+                  capture.string(), stem.string(), folder.string()));
+}
+
+void log_sentences(const std::vector<std::string>& sentences) {
+  for (const std::string& sentence : sentences) spdlog::warn("{}", sentence);
+}
+
+std::unique_ptr<PacketSource> open_capture(const fs::path& file, const SensorInfo& info,
+                                           const InputOptions& options, const Config& config) {
+  PcapSourceOptions source_options;
+  if (const auto rate = parse_rate(options.rate)) {
+    source_options.pacer = [pacer = std::make_shared<ReplayPacer>(*rate)](HostTime time) {
+      return pacer->wait(time);
+    };
+  }
+  if (!config.sensor.source_address.empty()) {
+    source_options.source_ip = IpAddress::parse(config.sensor.source_address);
+    if (!source_options.source_ip) {
+      throw ConfigError(fmt::format("sensor.source_address = \"{}\" is no IP address",
+                                    config.sensor.source_address));
+    }
+  }
+  auto source = std::make_unique<PcapSource>(file, info, source_options);
+  log_sentences(source->notices());
+  return source;
+}
+
+std::unique_ptr<UdpSource> open_udp(const SensorInfo& info, const Config::Sensor& sensor) {
+  UdpSourceOptions options;
+  options.bind_address = sensor.bind_address;
+  options.source_address = sensor.source_address;
+  options.lidar_port =
+      static_cast<std::uint16_t>(sensor.lidar_port > 0 ? sensor.lidar_port : info.lidar_port);
+  options.imu_port =
+      static_cast<std::uint16_t>(sensor.imu_port > 0 ? sensor.imu_port : info.imu_port);
+  options.rcvbuf_bytes = sensor.rcvbuf_bytes;
+  auto source = std::make_unique<UdpSource>(options);
+  if (source->granted_rcvbuf_bytes() < sensor.rcvbuf_bytes) {
+    spdlog::warn(
+        "the kernel grants a receive buffer of {} of {} bytes; packets may be lost; run: "
+        "sysctl -w net.core.rmem_max={}",
+        source->granted_rcvbuf_bytes(), sensor.rcvbuf_bytes, sensor.rcvbuf_bytes);
+  }
+  return source;
+}
+
+Input open_capture_input(const fs::path& file, const InputOptions& options, const Config& config) {
+  try {
+    Input input;
+    input.info = load_sensor_info(metadata_file(options, config, file));
+    input.source = open_capture(file, input.info, options, config);
+    input.options.lossless = true;
+    input.options.source_name = fmt::format("pcap:{}", file.string());
+    return input;
+  } catch (const InputError& error) {
+    throw ConfigError(error.what());
+  }
+}
+
+Input open_live_input(const InputOptions& options, const Config& config) {
+  Input input;
+  const fs::path metadata = metadata_file(options, config, {});
+  try {
+    input.info = load_sensor_info(metadata);
+  } catch (const InputError& error) {
+    throw ConfigError(error.what());
+  }
+  auto source = open_udp(input.info, config.sensor);
+  input.options.source_name = fmt::format("udp:{}", source->lidar_port());
+  input.source = std::move(source);
+  return input;
+}
+
+}  // namespace
+
+Input open_input(const InputOptions& options, const Config& config) {
+  const bool capture = options.source.starts_with(kPcapPrefix);
+  if (!capture && options.source != "udp") {
+    throw ConfigError(fmt::format("--source {} is neither udp nor pcap:FILE", options.source));
+  }
+  Input input = capture
+                    ? open_capture_input(options.source.substr(kPcapPrefix.size()), options, config)
+                    : open_live_input(options, config);
+  log_sentences(input.info.warnings);
+  return input;
+}
+
+fs::path new_session_file(const Config& config) {
+  const fs::path directory = resolve_auto(config.state.directory, "STATE_DIRECTORY", "");
+  if (directory.empty()) return {};
+  std::error_code error;
+  fs::create_directories(directory, error);
+  if (error) {
+    throw ConfigError(
+        fmt::format("state.directory = \"{}\" cannot be made: {}; name one that this user may "
+                    "write to, or \"\" "
+                    "to keep no sessions",
+                    directory.string(), error.message()));
+  }
+  const std::string stem =
+      fmt::format("session-{:%Y%m%dT%H%M%SZ}", fmt::gmtime(std::time(nullptr)));
+  fs::path file = directory / (stem + ".glint");
+  for (int i = 2; fs::exists(file); ++i) file = directory / fmt::format("{}-{}.glint", stem, i);
+  return file;
+}
+
+}  // namespace glint::daemon

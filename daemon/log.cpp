@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#include "daemon/log.hpp"
+
+#include <spdlog/pattern_formatter.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <cstdlib>
+
+#include "daemon/steady_clock.hpp"
+
+namespace glint::daemon {
+namespace {
+
+constexpr std::int64_t kQuiet_ns = 10 * kNsPerSecond;
+
+/// "<4>": how the journal learns the severity of a line (sd-daemon(3)).
+class JournalPriority : public spdlog::custom_flag_formatter {
+ public:
+  void format(const spdlog::details::log_msg& message, const std::tm&,
+              spdlog::memory_buf_t& out) override {
+    const char digit = message.level >= spdlog::level::err    ? '3'
+                       : message.level >= spdlog::level::warn ? '4'
+                       : message.level >= spdlog::level::info ? '6'
+                                                              : '7';
+    out.push_back('<');
+    out.push_back(digit);
+    out.push_back('>');
+  }
+  [[nodiscard]] std::unique_ptr<custom_flag_formatter> clone() const override {
+    return std::make_unique<JournalPriority>();
+  }
+};
+
+}  // namespace
+
+void set_up_logging(const std::string& level) {
+  auto logger =
+      std::make_shared<spdlog::logger>("glintd", std::make_shared<spdlog::sinks::stderr_sink_mt>());
+  if (std::getenv("JOURNAL_STREAM") != nullptr) {
+    auto formatter = std::make_unique<spdlog::pattern_formatter>();
+    formatter->add_flag<JournalPriority>('P').set_pattern("%P%v");
+    logger->set_formatter(std::move(formatter));
+  } else {
+    logger->set_pattern("%Y-%m-%dT%H:%M:%S.%e %l: %v");
+  }
+  logger->flush_on(spdlog::level::info);
+  spdlog::set_default_logger(std::move(logger));
+  set_log_level(level);
+}
+
+void set_log_level(const std::string& level) { spdlog::set_level(spdlog::level::from_str(level)); }
+
+bool LogLimiter::allow(const std::string& cause, std::int64_t now_ns) {
+  const auto [last, fresh] = last_ns_.try_emplace(cause, now_ns);
+  if (!fresh && now_ns - last->second < kQuiet_ns) return false;
+  last->second = now_ns;
+  return true;
+}
+
+}  // namespace glint::daemon

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#include "daemon/protocol_pose.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace glint::daemon {
+namespace {
+
+constexpr double kMaxPrediction_ms = 200.0;
+
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+/// Takes twists of the sensor to those of a body that is rigidly fixed to it (translation first).
+Matrix6d adjoint(const Pose& T_body_sensor) {
+  const Eigen::Matrix3d r = T_body_sensor.rotation.toRotationMatrix();
+  const Eigen::Vector3d& p = T_body_sensor.translation_m;
+  Eigen::Matrix3d skew;
+  skew << 0, -p.z(), p.y(), p.z(), 0, -p.x(), -p.y(), p.x(), 0;
+  Matrix6d out = Matrix6d::Zero();
+  out.topLeftCorner<3, 3>() = r;
+  out.topRightCorner<3, 3>() = skew * r;
+  out.bottomRightCorner<3, 3>() = r;
+  return out;
+}
+
+Json vector_json(const Eigen::Vector3d& v) { return Json{v.x(), v.y(), v.z()}; }
+
+void put_velocity(Json& out, Twist velocity, PoseFrames frames, const PoseContext& context) {
+  if (frames.base) velocity = adjoint(context.T_base_sensor) * velocity;
+  out["v_mps"] = vector_json(velocity.head<3>());
+  out["w_radps"] = vector_json(velocity.tail<3>());
+}
+
+void put_covariance(Json& out, Matrix6d covariance, PoseFrames frames, const PoseContext& context) {
+  if (frames.base) {
+    const Matrix6d a = adjoint(context.T_base_sensor);
+    covariance = a * covariance * a.transpose();
+  }
+  if (!covariance.allFinite()) return;  // Absent means unknown.
+  Json cov = Json::array();
+  for (const double value : covariance.reshaped<Eigen::RowMajor>()) cov.push_back(value);
+  out["cov"] = std::move(cov);
+}
+
+void put_map_correction(Json& out, const slam::MapCorrection& correction) {
+  Json T_map_odom = Json::object();
+  put_pose(T_map_odom, correction.T_map_odom);
+  out["T_map_odom"] = std::move(T_map_odom);
+  out["map_epoch"] = correction.epoch;
+}
+
+/// The members that every message about a pose begins with.
+Json head_json(slam::TrackingState state, PoseFrames frames) {
+  return Json{{"sensor", 0},
+              {"state", slam::to_string(state)},
+              {"frame", frames.map ? "map" : "odom"},
+              {"child", frames.base ? "base" : "sensor"}};
+}
+
+[[noreturn]] void refuse_time(const TrajectoryHistory& history, SensorTime stamp) {
+  if (history.first() == history.end()) {
+    throw RpcError(kOutOfRange, "there is no pose yet", "at_ns");
+  }
+  const std::int64_t from = history.at(history.first()).stamp.ns;
+  const std::int64_t to = history.at(history.end() - 1).stamp.ns;
+  const bool covered = stamp.ns >= from && stamp.ns <= to;
+  const char* why = covered ? "tracking restarted around at_ns; the covered span is {} to {}"
+                            : "at_ns is outside the covered span {} to {}";
+  throw RpcError(kOutOfRange, fmt::format(fmt::runtime(why), from, to), "at_ns",
+                 Json{{"from_ns", from}, {"to_ns", to}});
+}
+
+Json past_pose_json(const Snapshot& snapshot, SensorTime stamp, PoseFrames frames,
+                    const PoseContext& context) {
+  const auto record = pose_at(snapshot.history, stamp);
+  if (!record) refuse_time(snapshot.history, stamp);
+  Json out = head_json(record->state, frames);
+  put_time(out, stamp);
+  out["clock"] = "sensor";
+  put_pose(out, pose_in_frames(record->T_odom_sensor, frames, snapshot.correction, context));
+  put_velocity(out, record->velocity, frames, context);
+  put_map_correction(out, snapshot.correction);
+  out["interpolated"] = true;
+  return out;
+}
+
+}  // namespace
+
+PoseFrames pose_frames(const Json& params) {
+  return {choice_param(params, "frame", "map|odom") == "map",
+          choice_param(params, "child", "sensor|base") == "base"};
+}
+
+Pose pose_in_frames(const Pose& T_odom_sensor, PoseFrames frames, const slam::MapCorrection& map,
+                    const PoseContext& context) {
+  Pose pose = T_odom_sensor;
+  if (frames.map) pose = map.T_map_odom * pose;
+  if (frames.base) pose = pose * context.T_base_sensor.inverse();
+  return pose;
+}
+
+void put_pose(Json& out, const Pose& pose) {
+  const Eigen::Quaterniond& q = pose.rotation;
+  out["p_m"] = vector_json(pose.translation_m);
+  out["q_xyzw"] = Json{q.x(), q.y(), q.z(), q.w()};
+}
+
+Json newest_pose_json(const Snapshot& snapshot, PoseFrames frames, const PoseContext& context,
+                      std::int64_t now_ns) {
+  Json out = head_json(client_state(snapshot, now_ns, context.scan_period_ns), frames);
+  if (!snapshot.estimate) return out;
+  const slam::OdometryEstimate& estimate = *snapshot.estimate;
+  put_time(out, estimate.stamp);
+  out["t_host_ns"] = snapshot.host_time.ns;
+  out["clock"] = "sensor";
+  out["age_ms"] = static_cast<double>(now_ns - snapshot.arrival_ns) * 1e-6;
+  out["stale"] = is_stale(snapshot, now_ns, context.scan_period_ns);
+  put_pose(out, pose_in_frames(estimate.T_odom_sensor, frames, snapshot.correction, context));
+  put_velocity(out, estimate.velocity, frames, context);
+  put_covariance(out, estimate.covariance, frames, context);
+  put_map_correction(out, snapshot.correction);
+  out["frame_id"] = estimate.frame_id;
+  out["segment"] = estimate.segment;
+  out["completeness"] = estimate.completeness;
+  return out;
+}
+
+Json get_pose(const Json& params, const Snapshot& snapshot, const PoseContext& context,
+              std::int64_t now_ns) {
+  const PoseFrames frames = pose_frames(params);
+  const auto at = time_param(params, "at");
+  const double predict_ms = number_param(params, "predict_ms", 0.0, 0.0, kMaxPrediction_ms);
+  if (at && predict_ms > 0.0) {
+    throw RpcError(kInvalidParams, "at_ns and predict_ms exclude each other", "predict_ms");
+  }
+  if (at) return past_pose_json(snapshot, *at, frames, context);
+
+  Json out = newest_pose_json(snapshot, frames, context, now_ns);
+  if (predict_ms == 0.0 || !snapshot.estimate) return out;
+  const slam::OdometryEstimate& estimate = *snapshot.estimate;
+  const Pose predicted = estimate.T_odom_sensor * se3_exp(estimate.velocity * (predict_ms * 1e-3));
+  put_time(out, estimate.stamp + std::llround(predict_ms * 1e6));
+  put_pose(out, pose_in_frames(predicted, frames, snapshot.correction, context));
+  out.erase("cov");  // That of the newest pose says nothing about what came after it.
+  out["predicted_ms"] = predict_ms;
+  return out;
+}
+
+}  // namespace glint::daemon

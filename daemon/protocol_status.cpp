@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#include "daemon/protocol_status.hpp"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "daemon/version.hpp"
+
+namespace glint::daemon {
+namespace {
+
+constexpr double kMsPerNs = 1e-6;
+
+/// Resident memory now, MB.
+double resident_mb() {
+  unsigned long total = 0;
+  unsigned long resident = 0;
+  if (std::FILE* file = std::fopen("/proc/self/statm", "re")) {
+    if (std::fscanf(file, "%lu %lu", &total, &resident) != 2) resident = 0;
+    static_cast<void>(std::fclose(file));
+  }
+  return static_cast<double>(resident) * static_cast<double>(sysconf(_SC_PAGESIZE)) * 1e-6;
+}
+
+Json counters_json(const RuntimeStatus& runtime) {
+  const Snapshot& snapshot = *runtime.snapshot;
+  const AssemblerCounters& c = snapshot.packets;
+  return Json{{"received_packets", runtime.packets_received},
+              {"kernel_drops", runtime.kernel_drops},
+              {"queue_drops", runtime.packets.dropped},
+              {"lidar_packets", c.packets},
+              {"imu_packets", snapshot.imu_packets},
+              {"bad_size", c.bad_size},
+              {"bad_type", c.bad_type},
+              {"bad_serial", c.bad_serial},
+              {"bad_columns", c.bad_column},
+              {"late_packets", c.late_packets},
+              {"duplicate_packets", c.duplicate_packets},
+              {"missing_packets", c.missing_packets},
+              {"sensor_restarts", c.restarts},
+              {"scans", c.scans},
+              {"incomplete_scans", c.incomplete_scans},
+              {"paused_scans", snapshot.paused_scans},
+              {"poses", snapshot.scans},
+              {"dropped_keyframes", snapshot.dropped_keyframes},
+              {"store_failures", runtime.map->store_failures}};
+}
+
+Json duration_json(const DurationStats& stats) {
+  return Json{{"last", static_cast<double>(stats.last_ns) * kMsPerNs},
+              {"mean", static_cast<double>(stats.sum_ns) /
+                           static_cast<double>(std::max<std::uint64_t>(1, stats.count)) * kMsPerNs},
+              {"max", static_cast<double>(stats.max_ns) * kMsPerNs}};
+}
+
+/// Only stages that have run.
+Json stages_json(const RuntimeStatus& runtime) {
+  StageStats stats = runtime.snapshot->stages;
+  stats[slam::Stage::kBackend] = runtime.map->backend;
+  Json out = Json::object();
+  for (std::size_t i = 0; i < slam::kStageCount; ++i) {
+    if (stats.stages[i].count == 0) continue;
+    out[std::string(slam::kStageNames[i])] = duration_json(stats.stages[i]);
+  }
+  return out;
+}
+
+Json queue_json(const QueueStatus& queue) {
+  return Json{{"size", queue.size}, {"capacity", queue.capacity}, {"dropped", queue.dropped}};
+}
+
+Json odometry_json(const slam::OdometryEstimate& estimate) {
+  return Json{{"frame_id", estimate.frame_id},         {"segment", estimate.segment},
+              {"completeness", estimate.completeness}, {"keypoints", estimate.keypoints},
+              {"matches", estimate.matches},           {"inliers", estimate.inliers}};
+}
+
+}  // namespace
+
+std::string_view to_string(SourceState state) {
+  switch (state) {
+    case SourceState::kWaiting:
+      return "WAITING_DATA";
+    case SourceState::kRunning:
+      return "RUNNING";
+    case SourceState::kStalled:
+      return "STALLED";
+    case SourceState::kEnded:
+      return "ENDED";
+    case SourceState::kFailed:
+      return "FAILED";
+  }
+  return "FAILED";
+}
+
+Json status_json(const RuntimeStatus& runtime, const ServiceStatus& service, std::int64_t now_ns) {
+  const Snapshot& snapshot = *runtime.snapshot;
+  Json out{{"sensor", 0},
+           {"state", slam::to_string(client_state(snapshot, now_ns, service.scan_period_ns))},
+           {"sensor_state", to_string(runtime.source)}};
+  if (!runtime.source_error.empty()) out["sensor_error"] = runtime.source_error;
+  if (snapshot.estimate) {
+    put_time(out, snapshot.estimate->stamp);
+    out["age_ms"] = static_cast<double>(now_ns - snapshot.arrival_ns) * kMsPerNs;
+    out["odometry"] = odometry_json(*snapshot.estimate);
+  }
+  out["map_epoch"] = snapshot.correction.epoch;
+  const slam::MapSnapshot& map = *runtime.map->map;
+  out["map"] = Json{{"revision", map.revision},
+                    {"tiles", map.tiles.size()},
+                    {"points", map.point_count},
+                    {"points_refused", map.points_refused},
+                    {"keyframes", map.keyframe_count}};
+  out["counters"] = counters_json(runtime);
+  out["stage_ms"] = stages_json(runtime);
+  out["queues"] =
+      Json{{"packets", queue_json(runtime.packets)}, {"keyframes", queue_json(runtime.keyframes)}};
+  out["source"] = service.source_name;
+  out["session_file"] = service.session_file;
+  if (!runtime.map->store_error.empty()) out["store_error"] = runtime.map->store_error;
+  out["clients"] = service.clients;
+  out["rss_mb"] = resident_mb();
+  out["uptime_s"] = static_cast<double>(service.uptime_ns) * kSecondsPerNs;
+  out["version"] = kVersion;
+  out["instance"] = service.instance;
+  return out;
+}
+
+}  // namespace glint::daemon

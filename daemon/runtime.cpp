@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#include "daemon/runtime.hpp"
+
+#include <fmt/format.h>
+#include <pthread.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace glint::daemon {
+namespace {
+
+/// A live queue bridges two seconds, a machine's worst hiccup; in replay it only smooths.
+constexpr int kLiveScans = 20;
+constexpr int kReplayScans = 4;
+constexpr std::int64_t kMinSilence_ns = 300'000'000;
+constexpr std::chrono::milliseconds kWorkerWait{500};
+
+std::size_t packet_capacity(const SensorInfo& info, bool lossless) {
+  const int packets_per_scan = info.columns_per_frame / std::max(1, info.columns_per_packet);
+  return static_cast<std::size_t>(std::max(1, packets_per_scan) *
+                                  (lossless ? kReplayScans : kLiveScans));
+}
+
+template <class T>
+QueueStatus queue_status(const BoundedQueue<T>& queue) {
+  return {queue.size(), queue.capacity(), queue.dropped()};
+}
+
+}  // namespace
+
+Runtime::Runtime(const SensorInfo& info, const Config& config, std::unique_ptr<PacketSource> source,
+                 RuntimeOptions options)
+    : info_(info),
+      config_(config),
+      options_(std::move(options)),
+      source_(std::move(source)),
+      crossings_(packet_capacity(info, options_.lossless)),
+      backend_(info_, config_, options_.session_file, crossings_, backend_heartbeat_) {}
+
+Runtime::~Runtime() { stop(); }
+
+void Runtime::start(ScanListener on_scan) {
+  const ReceiveThread::Options receive{options_.lossless,
+                                       std::max(3 * info_.scan_period_ns(), kMinSilence_ns)};
+  receive_ = std::make_unique<ReceiveThread>(*source_, receive, crossings_, receive_heartbeat_);
+  odometry_ = std::make_unique<OdometryThread>(info_, config_, options_.lossless, crossings_,
+                                               odometry_heartbeat_, std::move(on_scan));
+  spawn("odometry", [this] { odometry_->run(); });
+  spawn("backend", [this] { backend_.run(); });
+  spawn("worker", [this] { work(); });
+  spawn("receive", [this] { receive_->run(); });
+}
+
+void Runtime::stop() {
+  source_->stop();
+  crossings_.jobs.close();
+  // Each stage closes the queue to the next one when it has finished.
+  for (std::thread& thread : threads_) thread.join();
+  threads_.clear();
+}
+
+void Runtime::spawn(const char* name, std::function<void()> body) {
+  threads_.emplace_back([this, name, body = std::move(body)] {
+    pthread_setname_np(pthread_self(), name);
+    try {
+      body();
+    } catch (const std::exception& error) {
+      {
+        const std::lock_guard lock(fault_mutex_);
+        if (fault_.empty()) fault_ = fmt::format("thread {}: {}", name, error.what());
+      }
+      // Nobody may wait for a thread that is gone.
+      source_->stop();
+      crossings_.close();
+    }
+  });
+}
+
+void Runtime::work() {
+  using PopResult = BoundedQueue<Job>::PopResult;
+  Job job;
+  PopResult result = PopResult::kTimeout;
+  while (result != PopResult::kClosed) {
+    worker_heartbeat_.beat();
+    result = crossings_.jobs.pop(job, kWorkerWait);
+    if (result == PopResult::kItem) std::exchange(job, nullptr)();
+  }
+  worker_heartbeat_.finish();
+}
+
+RuntimeStatus Runtime::status() const {
+  RuntimeStatus status;
+  status.snapshot = crossings_.snapshot.load();
+  status.map = crossings_.map.load();
+  status.source = crossings_.source.state.load();
+  if (status.source == SourceState::kFailed) status.source_error = crossings_.source.error;
+  status.packets_received = crossings_.source.packets.load();
+  status.kernel_drops = crossings_.source.kernel_drops.load();
+  status.packets = queue_status(crossings_.packets);
+  status.keyframes = queue_status(crossings_.keyframes);
+  return status;
+}
+
+bool Runtime::alive(std::int64_t limit_ns) const {
+  const std::int64_t now_ns = steady_now_ns();
+  return receive_heartbeat_.fresh(now_ns, limit_ns) &&
+         odometry_heartbeat_.fresh(now_ns, limit_ns) &&
+         backend_heartbeat_.fresh(now_ns, limit_ns) && worker_heartbeat_.fresh(now_ns, limit_ns);
+}
+
+std::string Runtime::fault() const {
+  const std::lock_guard lock(fault_mutex_);
+  return fault_;
+}
+
+}  // namespace glint::daemon

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#include "daemon/server.hpp"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <boost/asio/post.hpp>
+#include <chrono>
+#include <cstdlib>
+#include <utility>
+#include <vector>
+
+#include "daemon/host_port.hpp"
+#include "daemon/steady_clock.hpp"
+
+namespace glint::daemon {
+namespace {
+
+using boost::asio::ip::tcp;
+using boost::asio::local::stream_protocol;
+using boost::system::error_code;
+
+constexpr std::chrono::milliseconds kTick{100};
+constexpr std::chrono::seconds kAcceptPause{1};
+/// Poses on their way to the main thread; more only when it hangs.
+constexpr int kMaxPosted = 256;
+
+SessionLimits limits_of(const Config::Server& server) {
+  return {static_cast<std::size_t>(server.outbox_bytes),
+          static_cast<std::int64_t>(server.idle_timeout_s * 1e9),
+          static_cast<std::int64_t>(server.stall_timeout_s * 1e9)};
+}
+
+/// A socket file whose owner is gone stays behind and must go; one that answers is in use.
+void remove_stale_socket(boost::asio::io_context& io, const std::string& path) {
+  struct stat info {};
+  if (::lstat(path.c_str(), &info) != 0 || !S_ISSOCK(info.st_mode)) return;
+  stream_protocol::socket probe(io);
+  error_code error;
+  probe.connect(stream_protocol::endpoint(path), error);
+  if (!error) {
+    throw std::runtime_error(fmt::format(
+        "the socket {} is served by another program; stop it or change server.unix_socket", path));
+  }
+  ::unlink(path.c_str());
+}
+
+}  // namespace
+
+Server::Server(boost::asio::io_context& io, Api& api, const Config& config)
+    : io_(io),
+      api_(api),
+      max_clients_(static_cast<std::size_t>(config.server.max_clients)),
+      limits_(limits_of(config.server)),
+      tcp_(io),
+      unix_(io),
+      timer_(io) {
+  const std::string path =
+      resolve_auto(config.server.unix_socket, "RUNTIME_DIRECTORY", "glintd.sock");
+  if (config.server.listen.empty() && path.empty()) {
+    throw ConfigError("server.listen and server.unix_socket are both empty: nobody could connect");
+  }
+  if (!config.server.listen.empty()) listen_tcp(config.server.listen);
+  if (!path.empty()) listen_unix(path);
+}
+
+Server::~Server() { close(); }
+
+void Server::listen_tcp(const std::string& address) {
+  const auto target = parse_host_port(address);
+  if (!target) {
+    throw ConfigError(fmt::format(
+        "server.listen = \"{}\" is no HOST:PORT, e.g. \"127.0.0.1:7788\" or \"[::1]:7788\"",
+        address));
+  }
+  error_code error;
+  tcp::resolver resolver(io_);
+  const auto found =
+      resolver.resolve(target->host, std::to_string(target->port), tcp::resolver::passive, error);
+  if (error) {
+    throw std::runtime_error(
+        fmt::format("server.listen: cannot resolve {}: {}", target->host, error.message()));
+  }
+  const tcp::endpoint endpoint = found.begin()->endpoint();
+  if (!endpoint.address().is_loopback()) {
+    throw ConfigError(fmt::format(
+        "server.listen = \"{}\" is no loopback address: this version has no authentication, so it "
+        "serves this machine only; reach it from others through an SSH tunnel",
+        address));
+  }
+  tcp_.open(endpoint.protocol());
+  tcp_.set_option(tcp::acceptor::reuse_address(true));
+  tcp_.bind(endpoint, error);
+  if (!error) tcp_.listen(boost::asio::socket_base::max_listen_connections, error);
+  if (error) {
+    throw std::runtime_error(
+        fmt::format("cannot listen on {}: {}; stop the program that holds the port, or change "
+                    "server.listen (--set server.listen=HOST:PORT)",
+                    address, error.message()));
+  }
+}
+
+void Server::listen_unix(const std::string& path) {
+  if (path.size() >= 108) {
+    throw ConfigError(fmt::format("server.unix_socket: {} is longer than 107 bytes", path));
+  }
+  remove_stale_socket(io_, path);
+  unix_.open();
+  error_code error;
+  const mode_t old_mask = ::umask(0117);  // Owner and group may connect.
+  unix_.bind(stream_protocol::endpoint(path), error);
+  ::umask(old_mask);
+  if (!error) unix_.listen(boost::asio::socket_base::max_listen_connections, error);
+  if (error) {
+    throw std::runtime_error(
+        fmt::format("cannot listen on {}: {}; change server.unix_socket", path, error.message()));
+  }
+  unix_path_ = path;
+}
+
+void Server::start() {
+  if (tcp_.is_open()) accept(tcp_);
+  if (unix_.is_open()) accept(unix_);
+  tick();
+}
+
+template <class Acceptor>
+void Server::accept(Acceptor& acceptor) {
+  acceptor.async_accept([this, &acceptor](error_code error, auto socket) {
+    if (closed_) return;
+    if (!error) {
+      if constexpr (std::is_same_v<Acceptor, tcp::acceptor>) {
+        error_code ignored;
+        socket.set_option(tcp::no_delay(true), ignored);
+      }
+      admit(Session::Socket(std::move(socket)));
+    }
+    if (!error) return accept(acceptor);
+    // Out of file descriptors or the like: it passes, and a retry at once would spin.
+    auto pause = std::make_shared<boost::asio::steady_timer>(io_, kAcceptPause);
+    pause->async_wait([this, &acceptor, pause](error_code) {
+      if (!closed_) accept(acceptor);
+    });
+  });
+}
+
+void Server::admit(Session::Socket socket) {
+  if (sessions_.size() >= max_clients_) {
+    const RpcError error(kBusy, fmt::format("{} clients are connected already, which is the most "
+                                            "allowed (server.max_clients)",
+                                            sessions_.size()));
+    // A fresh connection's buffer takes one line; if not, the client sees just the close.
+    error_code ignored;
+    socket.non_blocking(true, ignored);
+    socket.send(boost::asio::buffer(error_line(nullptr, error)), 0, ignored);
+    return;
+  }
+  auto session = std::make_shared<Session>(std::move(socket), api_, limits_,
+                                           [this](const std::shared_ptr<Session>& closed) {
+                                             sessions_.erase(closed);
+                                             api_.set_client_count(sessions_.size());
+                                           });
+  sessions_.insert(session);
+  api_.set_client_count(sessions_.size());
+  session->start();
+}
+
+void Server::tick() {
+  const std::vector<std::shared_ptr<Session>> sessions(sessions_.begin(), sessions_.end());
+  for (const auto& session : sessions) session->tick(steady_now_ns());
+  timer_.expires_after(kTick);
+  timer_.async_wait([this](error_code error) {
+    if (!error && !closed_) tick();
+  });
+}
+
+void Server::publish(const std::shared_ptr<const Snapshot>& snapshot) {
+  if (poses_posted_.fetch_add(1) >= kMaxPosted) {
+    poses_posted_.fetch_sub(1);
+    return;
+  }
+  boost::asio::post(io_, [this, snapshot] {
+    poses_posted_.fetch_sub(1);
+    const std::vector<std::shared_ptr<Session>> sessions(sessions_.begin(), sessions_.end());
+    for (const auto& session : sessions) session->offer(snapshot);
+  });
+}
+
+void Server::close() {
+  if (std::exchange(closed_, true)) return;
+  error_code ignored;
+  tcp_.close(ignored);
+  unix_.close(ignored);
+  if (!unix_path_.empty()) ::unlink(unix_path_.c_str());
+  timer_.cancel();
+  const std::vector<std::shared_ptr<Session>> sessions(sessions_.begin(), sessions_.end());
+  for (const auto& session : sessions) session->close();
+}
+
+std::uint16_t Server::tcp_port() const {
+  error_code error;
+  const auto endpoint = tcp_.local_endpoint(error);
+  return error ? std::uint16_t{0} : endpoint.port();
+}
+
+std::string resolve_auto(const std::string& value, const char* variable, const std::string& file) {
+  if (value != "auto") return value;
+  const char* directories = std::getenv(variable);
+  if (directories == nullptr || *directories == '\0') return {};
+  const std::string list = directories;
+  std::string path = list.substr(0, list.find(':'));
+  if (!file.empty()) path += "/" + file;
+  return path;
+}
+
+}  // namespace glint::daemon

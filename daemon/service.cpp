@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#include "daemon/service.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <csignal>
+
+#include "daemon/protocol_status.hpp"
+#include "daemon/steady_clock.hpp"
+#include "daemon/systemd_notify.hpp"
+
+namespace glint::daemon {
+namespace {
+
+constexpr std::int64_t kSupervision_ns = kNsPerSecond;
+/// No thread works on one thing for so long.
+constexpr std::int64_t kThreadLimit_ns = 10 * kNsPerSecond;
+
+/// Between two looks: often enough for the watchdog, and for the log.
+std::chrono::nanoseconds supervision_period() {
+  const std::int64_t watchdog_ns = systemd::watchdog_period_ns();
+  return std::chrono::nanoseconds(watchdog_ns > 0 ? std::min(watchdog_ns, kSupervision_ns)
+                                                  : kSupervision_ns);
+}
+
+RuntimeOptions with_session(RuntimeOptions options, const Config& config) {
+  options.session_file = new_session_file(config);
+  if (options.session_file.empty()) {
+    spdlog::info("no session is kept: state.directory is not set");
+  }
+  return options;
+}
+
+}  // namespace
+
+Service::Service(const Config& config, Input input, Reload reload)
+    : config_(config),
+      reload_(std::move(reload)),
+      runtime_(input.info, config, std::move(input.source), with_session(input.options, config)),
+      api_(io_, runtime_, config),
+      server_(io_, api_, config),
+      signals_(io_, SIGINT, SIGTERM, SIGHUP),
+      timer_(io_) {}
+
+int Service::run() {
+  runtime_.start([this](const auto& snapshot) { server_.publish(snapshot); });
+  server_.start();
+  wait_for_signal();
+  supervise();
+  if (server_.tcp_port() != 0) {
+    spdlog::info("serving {} on TCP port {}", runtime_.options().source_name, server_.tcp_port());
+  }
+  if (!server_.unix_path().empty()) spdlog::info("serving on {}", server_.unix_path());
+  systemd::notify_ready();
+  io_.run();
+  runtime_.stop();
+  health_.look(runtime_.status(), steady_now_ns(), runtime_.info().scan_period_ns());
+  spdlog::info("stopped after {} poses", runtime_.snapshot()->scans);
+  return exit_code_;
+}
+
+void Service::wait_for_signal() {
+  signals_.async_wait([this](boost::system::error_code error, int signal) {
+    if (error) return;
+    if (signal != SIGHUP) {
+      spdlog::info("stopping on {}", signal == SIGTERM ? "SIGTERM" : "SIGINT");
+      return stop(0);
+    }
+    reload();
+    wait_for_signal();
+  });
+}
+
+void Service::reload() {
+  systemd::notify_reloading();
+  try {
+    const Config fresh = reload_();
+    const Json before = to_json(config_).flatten();
+    const Json after = to_json(fresh).flatten();
+    for (const auto& [pointer, value] : after.items()) {
+      if (before.value(pointer, Json()) == value || pointer == "/log/level") continue;
+      spdlog::warn("reload: {} = {} takes effect at the next start only", pointer, value.dump());
+    }
+    config_.log = fresh.log;
+    set_log_level(fresh.log.level);
+    spdlog::info("reload: log.level is {}", fresh.log.level);
+  } catch (const ConfigError& error) {
+    spdlog::error("reload: nothing changed: {}", error.what());
+  }
+  systemd::notify_ready();
+}
+
+void Service::supervise() {
+  const std::int64_t now_ns = steady_now_ns();
+  const RuntimeStatus status = runtime_.status();
+  const std::int64_t period_ns = runtime_.info().scan_period_ns();
+  health_.look(status, now_ns, period_ns);
+  systemd::notify_status(
+      fmt::format("{}, sensor {}, {} clients",
+                  slam::to_string(client_state(*status.snapshot, now_ns, period_ns)),
+                  to_string(status.source), server_.client_count()));
+  if (const std::string fault = runtime_.fault(); !fault.empty()) {
+    spdlog::critical("stopping: {}", fault);
+    return stop(1);
+  }
+  if (status.source == SourceState::kFailed && !runtime_.options().lossless) {
+    spdlog::critical("stopping: the packet source broke: {}", status.source_error);
+    return stop(1);
+  }
+  if (runtime_.alive(kThreadLimit_ns)) systemd::notify_watchdog();
+
+  timer_.expires_after(supervision_period());
+  timer_.async_wait([this](boost::system::error_code error) {
+    if (!error) supervise();
+  });
+}
+
+void Service::stop(int exit_code) {
+  exit_code_ = exit_code;
+  systemd::notify_stopping();
+  server_.close();
+  io_.stop();
+}
+
+}  // namespace glint::daemon

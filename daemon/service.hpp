@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <functional>
+
+#include "daemon/api.hpp"
+#include "daemon/config.hpp"
+#include "daemon/health_log.hpp"
+#include "daemon/input.hpp"
+#include "daemon/runtime.hpp"
+#include "daemon/server.hpp"
+
+namespace glint::daemon {
+
+/// The daemon: pipeline, server, signals and supervision, on the caller's thread.
+class Service {
+ public:
+  /// Reads the configuration again, for SIGHUP. @throws ConfigError.
+  using Reload = std::function<Config()>;
+
+  /// Listens from here on. @throws as open_input(), Server and Runtime do.
+  Service(const Config& config, Input input, Reload reload);
+
+  /// Serves until SIGTERM, SIGINT or a fault. Returns the exit code: 0, or 1 after a fault.
+  int run();
+
+ private:
+  void wait_for_signal();
+  void reload();
+  void supervise();
+  void stop(int exit_code);
+
+  Config config_;
+  const Reload reload_;
+  boost::asio::io_context io_{1};
+  Runtime runtime_;
+  Api api_;
+  Server server_;
+  boost::asio::signal_set signals_;
+  boost::asio::steady_timer timer_;
+  HealthLog health_;
+  int exit_code_ = 0;
+};
+
+}  // namespace glint::daemon

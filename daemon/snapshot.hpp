@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "daemon/stage_stats.hpp"
+#include "daemon/trajectory_history.hpp"
+#include "driver/core/scan_assembler.hpp"
+#include "slam/backend.hpp"
+#include "slam/map.hpp"
+#include "slam/odometry_estimate.hpp"
+
+namespace glint::daemon {
+
+/// What odometry knows after a scan. Immutable once published; any thread may read it.
+struct Snapshot {
+  std::uint64_t scans = 0;  ///< Scans that gave an estimate.
+  std::optional<slam::OdometryEstimate> estimate;
+  slam::MapCorrection correction;
+  HostTime host_time;           ///< Arrival of the packet that completed the scan.
+  std::int64_t arrival_ns = 0;  ///< The same instant on the steady clock of this machine.
+  bool paused = false;
+  TrajectoryHistory history;
+
+  AssemblerCounters packets;
+  std::uint64_t imu_packets = 0;
+  std::uint64_t paused_scans = 0;       ///< Scans not used because of a pause.
+  std::uint64_t dropped_keyframes = 0;  ///< The back end was too slow for them.
+  StageStats stages;
+};
+
+/// What the back end knows after a keyframe. Immutable once published.
+struct MapState {
+  std::shared_ptr<const slam::MapSnapshot> map;  ///< Never null.
+  DurationStats backend;
+  std::uint64_t store_failures = 0;
+  std::string store_error;
+};
+
+/// A pose is stale when it is older than three scan periods. It is never TRACKING then.
+inline bool is_stale(const Snapshot& snapshot, std::int64_t now_ns, std::int64_t scan_period_ns) {
+  return now_ns - snapshot.arrival_ns > 3 * scan_period_ns;
+}
+
+/// The state that clients are told at steady time `now_ns`: INIT before the first pose, PAUSED
+/// while paused, DEGRADED in place of TRACKING when the pose is stale, else the estimate's.
+inline slam::TrackingState client_state(const Snapshot& snapshot, std::int64_t now_ns,
+                                        std::int64_t scan_period_ns) {
+  using State = slam::TrackingState;
+  if (snapshot.paused) return State::kPaused;
+  if (!snapshot.estimate) return State::kInit;
+  const State state = snapshot.estimate->state;
+  const bool stale = is_stale(snapshot, now_ns, scan_period_ns);
+  return state == State::kTracking && stale ? State::kDegraded : state;
+}
+
+}  // namespace glint::daemon

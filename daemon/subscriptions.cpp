@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#include "daemon/subscriptions.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace glint::daemon {
+namespace {
+
+constexpr std::size_t kMaxWaiting = 64;
+constexpr double kMinRate_hz = 0.01;
+constexpr double kMaxRate_hz = 1000.0;
+constexpr double kDefaultStatusRate_hz = 1.0;
+constexpr double kMaxStatusRate_hz = 10.0;
+
+struct Topics {
+  bool pose = false;
+  bool status = false;
+};
+
+Topics parse_topics(const Json& params, bool required) {
+  const Json* list = find_param(params, "topics");
+  if (list == nullptr && !required) return {true, true};
+  Topics topics;
+  bool ok = list != nullptr && list->is_array() && !list->empty();
+  if (ok) {
+    for (const Json& topic : *list) {
+      topics.pose = topics.pose || topic == "pose";
+      topics.status = topics.status || topic == "status";
+      ok = ok && (topic == "pose" || topic == "status");
+    }
+  }
+  if (!ok) throw RpcError(kInvalidParams, "topics must be a list of pose, status", "topics");
+  return topics;
+}
+
+std::int64_t period_ns(double rate_hz) { return std::llround(1e9 / rate_hz); }
+
+}  // namespace
+
+Json Subscriptions::subscribe(const Json& params) {
+  const Topics topics = parse_topics(params, true);
+  const PoseFrames frames = pose_frames(params);
+  const double asked_hz = number_param(params, "rate_hz", 0.0, kMinRate_hz, kMaxRate_hz);
+  if (topics.pose) {
+    PoseTopic topic;
+    topic.frames = frames;
+    const bool every_scan = asked_hz == 0.0 || asked_hz >= api_.scan_rate_hz();
+    topic.rate_hz = every_scan ? api_.scan_rate_hz() : asked_hz;
+    topic.period_ns = every_scan ? 0 : period_ns(asked_hz);
+    pose_ = std::move(topic);
+  }
+  if (topics.status) {
+    StatusTopic topic;
+    topic.rate_hz = std::min(asked_hz == 0.0 ? kDefaultStatusRate_hz : asked_hz, kMaxStatusRate_hz);
+    topic.period_ns = period_ns(topic.rate_hz);
+    status_ = topic;
+  }
+  return echo();
+}
+
+Json Subscriptions::unsubscribe(const Json& params) {
+  const Topics topics = parse_topics(params, false);
+  if (topics.pose) pose_.reset();
+  if (topics.status) status_.reset();
+  return echo();
+}
+
+Json Subscriptions::echo() const {
+  Json topics = Json::array();
+  Json settings = Json::object();
+  if (pose_) {
+    topics.push_back("pose");
+    settings["pose"] = Json{{"rate_hz", pose_->rate_hz},
+                            {"every_scan", pose_->period_ns == 0},
+                            {"frame", pose_->frames.map ? "map" : "odom"},
+                            {"child", pose_->frames.base ? "base" : "sensor"}};
+  }
+  if (status_) {
+    topics.push_back("status");
+    settings["status"] = Json{{"rate_hz", status_->rate_hz}};
+  }
+  return Json{{"topics", std::move(topics)}, {"settings", std::move(settings)}};
+}
+
+void Subscriptions::offer(const std::shared_ptr<const Snapshot>& snapshot) {
+  if (!pose_) return;
+  const std::int64_t stamp_ns = snapshot->estimate->stamp.ns;
+  if (pose_->period_ns > 0) {
+    // A clock that went back, or stood still for long, starts the rhythm anew.
+    const std::int64_t ahead_ns = pose_->next_due_ns - stamp_ns;
+    if (std::abs(ahead_ns) > 2 * pose_->period_ns) pose_->next_due_ns = stamp_ns;
+    if (stamp_ns < pose_->next_due_ns) return;
+    pose_->next_due_ns += pose_->period_ns;
+  }
+  if (pose_->waiting.size() == kMaxWaiting) {
+    pose_->waiting.pop_front();
+    ++pose_->missed;
+  }
+  pose_->waiting.push_back({pose_->seq++, snapshot});
+}
+
+void Subscriptions::tick(std::int64_t now_ns) {
+  if (!status_ || now_ns < status_->next_due_ns) return;
+  status_->next_due_ns += status_->period_ns;
+  if (status_->next_due_ns <= now_ns) status_->next_due_ns = now_ns + status_->period_ns;
+  // The status is made when it is sent, so one that still waits is replaced by the newer one.
+  if (std::exchange(status_->waiting, true)) ++status_->missed;
+  ++status_->seq;
+}
+
+std::optional<std::string> Subscriptions::next_line() {
+  if (pose_ && !pose_->waiting.empty()) {
+    const WaitingPose waiting = std::move(pose_->waiting.front());
+    pose_->waiting.pop_front();
+    Json params = api_.pose(*waiting.snapshot, pose_->frames);
+    params["seq"] = waiting.seq;
+    params["missed"] = pose_->missed;
+    return notification_line("pose", params);
+  }
+  if (status_ && std::exchange(status_->waiting, false)) {
+    Json params = api_.status();
+    params["seq"] = status_->seq - 1;
+    params["missed"] = status_->missed;
+    return notification_line("status", params);
+  }
+  return std::nullopt;
+}
+
+}  // namespace glint::daemon
