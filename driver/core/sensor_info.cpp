@@ -134,6 +134,12 @@ void read_profile(const MetadataGroup& format, SensorInfo& info) {
                     name, fmt::join(names, ", ")));
   }
   info.profile = known->first;
+  const std::string imu = format.text("udp_profile_imu").value_or("LEGACY");
+  if (imu != "LEGACY") {
+    info.warnings.push_back(fmt::format(
+        "IMU packets of profile {} are not read; set udp_profile_imu to LEGACY to use the IMU",
+        imu));
+  }
 }
 
 // Number of columns and rate: from the data format, else from the lidar mode.

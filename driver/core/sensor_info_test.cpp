@@ -123,6 +123,12 @@ TEST(SensorInfo, AzimuthWindowInWholeDegreesIsWarnedOf) {
   EXPECT_THAT(parse(metadata).warnings, ElementsAre(HasSubstr("azimuth window")));
 }
 
+TEST(SensorInfo, ImuProfileThatIsNotReadIsWarnedOf) {
+  json metadata = flat_metadata();
+  metadata["data_format"]["udp_profile_imu"] = "ACCEL32_GYRO32_NMEA";
+  EXPECT_THAT(parse(metadata).warnings, ElementsAre(HasSubstr("ACCEL32_GYRO32_NMEA")));
+}
+
 TEST(SensorInfo, UnknownProfileIsNamedWithTheKnownOnes) {
   json metadata = flat_metadata();
   metadata["data_format"]["udp_profile_lidar"] = "RNG99_NEW";
