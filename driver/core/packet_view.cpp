@@ -41,7 +41,9 @@ const std::byte* ColumnView::pixels() const { return data_ + format_->layout->co
 std::uint32_t ColumnView::value(Channel channel, int row) const {
   const PixelField& field = format_->layout->field(channel);
   if (!field.present()) return 0;
-  const std::byte* from = pixels() + row * format_->layout->pixel_bytes + field.offset_bits / 8;
+  const std::byte* from = pixels() +
+                          static_cast<std::ptrdiff_t>(row) * format_->layout->pixel_bytes +
+                          field.offset_bits / 8;
   std::uint32_t bits = 0;
   std::memcpy(&bits, from, static_cast<std::size_t>(field.width_bits + 7) / 8);
   const std::uint32_t mask = (1U << field.width_bits) - 1U;

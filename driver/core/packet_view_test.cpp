@@ -22,11 +22,11 @@ TEST(PacketView, LegacyFieldsAreWhereTheManualPutsThem) {
   const SensorInfo info = make_sensor(LidarProfile::kLegacy, 64, 1024);
   const PacketFormat format(info);
   Bytes packet(12608);
-  std::byte* column = packet.data() + 3 * 788;
+  std::byte* column = packet.data() + 3UL * 788;
   store<std::uint64_t>(column, 123'456'789'012);
   store<std::uint16_t>(column + 8, 515);
   store<std::uint16_t>(column + 10, 65'535);
-  std::byte* pixel = column + 16 + 12 * 7;
+  std::byte* pixel = column + 16 + 12UL * 7;
   store<std::uint32_t>(pixel, 0x8000'0000U | 0xF'1234U);
   store<std::uint16_t>(pixel + 4, 0xABCD);
   store<std::uint16_t>(pixel + 6, 4321);
@@ -55,9 +55,9 @@ TEST(PacketView, DualReturnFieldsAreWhereTheManualPutsThem) {
   store<std::uint16_t>(packet.data() + 2, 4711);
   store<std::uint32_t>(packet.data() + 4, 0xFE'DCBAU);
   store<std::uint64_t>(packet.data() + 7, 992'137'000'142U);
-  std::byte* column = packet.data() + 32 + 2 * (12 + 32 * 16);
+  std::byte* column = packet.data() + 32 + 2UL * (12 + 32UL * 16);
   store<std::uint16_t>(column + 10, 1);
-  std::byte* pixel = column + 12 + 16 * 5;
+  std::byte* pixel = column + 12 + 16UL * 5;
   store<std::uint32_t>(pixel, 200U << 24U | 0x1FU << 19U | 300'000U);
   store<std::uint32_t>(pixel + 4, 17U << 24U | 0x1FU << 19U | 524'287U);
   store<std::uint16_t>(pixel + 8, 1001);
@@ -147,7 +147,7 @@ TEST(PacketWriter, WideValuesSaturateAndRangesRoundDown) {
   const SensorInfo info = make_sensor(LidarProfile::kRng15Rfl8Nir8, 16, 512);
   LidarScan scan{PacketFormat(info)};
   scan.range_mm(0, 0) = 1'000'000;
-  scan.range_mm(1, 0) = 8 * 1000 + 7;
+  scan.range_mm(1, 0) = 8U * 1000 + 7;
   scan.reflectivity(0, 0) = 0xABCD;
   scan.near_ir(0, 0) = 60'000;
   const Bytes packet = encode(info, scan)[0];

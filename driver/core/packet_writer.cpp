@@ -29,7 +29,7 @@ void write_pixels(const PacketFormat& format, const LidarScan& scan, int m, std:
     if (image.empty() || !format.has(channel)) return;
     for (int r = 0; r < format.pixels_per_column; ++r) {
       write_field(format.layout->field(channel), image(r, m),
-                  pixels + r * format.layout->pixel_bytes);
+                  pixels + static_cast<std::ptrdiff_t>(r) * format.layout->pixel_bytes);
     }
   };
   write_channel(Channel::kRange, scan.range_mm);

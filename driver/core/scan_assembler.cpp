@@ -269,12 +269,12 @@ void ScanAssembler::Impl::place(const PacketView& packet, OpenScan& scan) {
 
 // Whether the packet is as nearly all are: neighbouring columns, all of them valid and new.
 bool ScanAssembler::Impl::fits_whole(const PacketView& packet, const OpenScan& scan) const {
-  const int first = packet.column(0).measurement_id();
+  const std::uint16_t first = packet.column(0).measurement_id();
   if (first + packet.column_count() > format.columns_per_frame) return false;
   for (int i = 0; i < packet.column_count(); ++i) {
     const ColumnView column = packet.column(i);
     if (column.measurement_id() != first + i || !column.valid()) return false;
-    if (scan.arrived[static_cast<std::size_t>(first + i)] != 0) return false;
+    if (scan.arrived[column.measurement_id()] != 0) return false;
   }
   return true;
 }

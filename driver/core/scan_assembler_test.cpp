@@ -70,55 +70,68 @@ INSTANTIATE_TEST_SUITE_P(All, EveryProfile,
                                          LidarProfile::kRng15Rfl8Nir8),
                          [](const auto& profile) { return std::string(to_string(profile.param)); });
 
-// Random scans across the wrap of the frame id, their packets permuted within the reorder window,
-// some doubled and some lost: what comes out is what went in, and every packet is accounted for.
-TEST_P(EveryProfile, ScansSurvivePermutationDuplicationAndLoss) {
-  const SensorInfo info = make_sensor(GetParam(), 16, kColumns);
-  std::mt19937 random(6);
-  for (int round = 0; round < 20; ++round) {
-    std::vector<LidarScan> sent;
-    std::vector<Bytes> wire;
-    std::uint64_t lost = 0;
-    std::uint64_t doubled = 0;
-    const int first_id = 65'530;
-    for (int k = 0; k < 12; ++k) {
-      sent.push_back(random_scan(info, static_cast<std::uint16_t>(first_id + k), random));
+// A sensor behind a bad network: random scans across the wrap of the frame id, some packets lost,
+// some doubled, and all permuted within the reorder window.
+struct BadNetwork {
+  static constexpr int kScans = 12;
+  static constexpr int kFirstId = 65'530;
+
+  BadNetwork(const SensorInfo& info, std::mt19937& random) {
+    for (int k = 0; k < kScans; ++k) {
+      scans.push_back(random_scan(info, static_cast<std::uint16_t>(kFirstId + k), random));
       for (int m = 0; m < kColumns; ++m) {
-        sent.back().column_time[static_cast<std::size_t>(m)] = nominal_time(info, k, m);
+        scans.back().column_time[static_cast<std::size_t>(m)] = nominal_time(info, k, m);
       }
-      const auto packets = encode(info, sent.back());
-      for (int i = 0; i < kPackets; ++i) {
-        const auto chance = random() % 50;
-        if (chance == 0) {
-          clear_columns(sent.back(), 16 * i, 16 * i + 16);
-          ++lost;
-        } else {
-          wire.push_back(packets[static_cast<std::size_t>(i)]);
-          if (chance == 1) wire.push_back(wire.back());
-          doubled += chance == 1 ? 1 : 0;
-        }
-      }
+      send(encode(info, scans.back()), random);
     }
     for (auto at = wire.begin(); at != wire.end();) {
       const auto end = at + std::min<std::ptrdiff_t>(4, wire.end() - at);
       std::shuffle(at, end, random);
       at = end;
     }
-    Stream stream(info);
-    stream.push_all(wire);
-    stream.flush();
+  }
 
-    ASSERT_EQ(stream.scans.size(), sent.size());
-    for (std::size_t k = 0; k < sent.size(); ++k) {
-      EXPECT_EQ(stream.scans[k].frame_id, sent[k].frame_id);
-      EXPECT_EQ(stream.scans[k].sequence, first_id + k) << "the frame id wraps, this does not";
-      EXPECT_TRUE(same_columns(stream.scans[k], sent[k])) << "scan " << k << " of round " << round;
+  void send(const std::vector<Bytes>& packets, std::mt19937& random) {
+    for (int i = 0; i < kPackets; ++i) {
+      const auto chance = random() % 50;
+      if (chance == 0) {
+        clear_columns(scans.back(), 16 * i, 16 * i + 16);
+        ++lost;
+        continue;
+      }
+      wire.push_back(packets[static_cast<std::size_t>(i)]);
+      if (chance != 1) continue;
+      wire.push_back(wire.back());
+      ++doubled;
+    }
+  }
+
+  std::vector<LidarScan> scans;  // without what was lost
+  std::vector<Bytes> wire;
+  std::uint64_t lost = 0;
+  std::uint64_t doubled = 0;
+};
+
+// What comes out is what went in, and every packet is accounted for.
+TEST_P(EveryProfile, ScansSurvivePermutationDuplicationAndLoss) {
+  const SensorInfo info = make_sensor(GetParam(), 16, kColumns);
+  std::mt19937 random(6);
+  for (int round = 0; round < 20; ++round) {
+    const BadNetwork sent(info, random);
+    Stream stream(info);
+    stream.push_all(sent.wire);
+    stream.flush();
+    ASSERT_EQ(stream.scans.size(), sent.scans.size());
+    for (std::size_t k = 0; k < sent.scans.size(); ++k) {
+      EXPECT_EQ(stream.scans[k].frame_id, sent.scans[k].frame_id);
+      EXPECT_EQ(stream.scans[k].sequence, BadNetwork::kFirstId + k) << "this does not wrap";
+      EXPECT_TRUE(same_columns(stream.scans[k], sent.scans[k])) << k << " of round " << round;
     }
     const AssemblerCounters& counters = stream.counters();
-    EXPECT_EQ(counters.packets, sent.size() * kPackets - lost);
-    EXPECT_EQ(counters.missing_packets, lost);
-    EXPECT_EQ(counters.late_packets + counters.duplicate_packets, doubled);
-    EXPECT_EQ(counters.scans, sent.size());
+    EXPECT_EQ(counters.packets, sent.scans.size() * kPackets - sent.lost);
+    EXPECT_EQ(counters.missing_packets, sent.lost);
+    EXPECT_EQ(counters.late_packets + counters.duplicate_packets, sent.doubled);
+    EXPECT_EQ(counters.scans, sent.scans.size());
     EXPECT_EQ(counters.restarts + counters.stray_packets + counters.bad_column, 0U);
   }
 }

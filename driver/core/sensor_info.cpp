@@ -127,6 +127,7 @@ void read_profile(const MetadataGroup& format, SensorInfo& info) {
                                    [&](const auto& entry) { return entry.second == name; });
   if (known == kProfileNames.end()) {
     std::vector<std::string_view> names;
+    names.reserve(kProfileNames.size());
     for (const auto& entry : kProfileNames) names.push_back(entry.second);
     format.fail(
         "udp_profile_lidar",

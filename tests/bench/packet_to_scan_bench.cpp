@@ -78,7 +78,8 @@ void assemble(benchmark::State& state, LidarProfile profile, int rows, std::size
   PacketRing ring(info, bytes);
   ScanAssembler assembler(info);
   std::uint64_t scans = 0;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ :
+       state) {  // NOLINT: the library's idiom, its variable is never read
     for (std::size_t i = 0; i < ring.size(); ++i) {
       assembler.push(ring.packet(i));
       while (const LidarScan* scan = assembler.next()) {
@@ -102,7 +103,8 @@ void copy(benchmark::State& state, LidarProfile profile, int rows, std::size_t b
   const std::size_t packet_bytes = ring.packet(0).size();
   const std::size_t slots = kColumns / static_cast<std::size_t>(info.columns_per_packet);
   test::Bytes scan(packet_bytes * slots);
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ :
+       state) {  // NOLINT: the library's idiom, its variable is never read
     for (std::size_t i = 0; i < ring.size(); ++i) {
       std::memcpy(scan.data() + i % slots * packet_bytes, ring.packet(i).data(), packet_bytes);
       benchmark::ClobberMemory();

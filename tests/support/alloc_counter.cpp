@@ -25,11 +25,13 @@ constinit std::atomic<std::uint64_t> allocations = 0;
 #ifndef GLINT_SANITIZED
 
 // The C library's own entry points, behind the public names replaced here.
+// NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming): their names are given.
 extern "C" {
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
 void* __libc_realloc(void* block, std::size_t size);
 void* __libc_memalign(std::size_t alignment, std::size_t size);
+// NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)
 
 void* malloc(std::size_t size) noexcept {
   allocations.fetch_add(1, std::memory_order_relaxed);
