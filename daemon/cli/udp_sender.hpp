@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace glint::cli {
+
+/// Sends datagrams to one address, IPv4 or IPv6. Nobody need listen there. Thread-compatible.
+class UdpSender {
+ public:
+  /// @throws InputError if the host has no address or no socket can be opened.
+  UdpSender(const std::string& host, std::uint16_t port);
+  ~UdpSender();
+  UdpSender(const UdpSender&) = delete;
+  UdpSender& operator=(const UdpSender&) = delete;
+
+  /// Sends one datagram; waits while the kernel's buffer is full.
+  /// @throws std::runtime_error with a sentence when it cannot be sent.
+  void send(std::span<const std::byte> datagram) const;
+
+ private:
+  const std::string target_;  ///< For messages.
+  int socket_ = -1;
+};
+
+}  // namespace glint::cli
