@@ -34,7 +34,7 @@ struct Hit {
 /// be called from any number of threads.
 class Scene {
  public:
-  void add(const Quad& quad) { quads_.push_back(quad); }
+  void add(const Quad& quad);
   /// A box that stands on the ground, turned about z: five faces with one texture.
   void add_box(const Eigen::Vector3d& centre_of_base_m, const Eigen::Vector3d& size_m,
                double yaw_rad, const std::shared_ptr<const Texture>& texture);
@@ -46,7 +46,13 @@ class Scene {
   [[nodiscard]] double distance_to_surface_m(const Eigen::Vector3d& point_m) const;
 
  private:
+  /// A quad's plane, for rays: normal * x = offset_m.
+  struct Plane {
+    Eigen::Vector3d normal;
+    double offset_m;
+  };
   std::vector<Quad> quads_;
+  std::vector<Plane> planes_;  ///< One for each quad.
 };
 
 }  // namespace glint::synth

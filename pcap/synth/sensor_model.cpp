@@ -56,11 +56,7 @@ const Optics& optics_of(const std::string& name) {
 double footprint_albedo(const Hit& hit, double cosine) {
   const double half_m = 0.25 * kDivergence_rad * hit.distance_m;
   const double long_m = std::min(half_m / std::max(cosine, 0.05), 10.0 * half_m);
-  const Texture& texture = *hit.quad->texture;
-  return 0.25 * (texture.albedo(hit.u_m - long_m, hit.v_m - half_m) +
-                 texture.albedo(hit.u_m + long_m, hit.v_m - half_m) +
-                 texture.albedo(hit.u_m - long_m, hit.v_m + half_m) +
-                 texture.albedo(hit.u_m + long_m, hit.v_m + half_m));
+  return hit.quad->texture->albedo(hit.u_m, hit.v_m, long_m, half_m);
 }
 
 std::uint16_t counted(double photons) {

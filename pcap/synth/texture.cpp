@@ -12,11 +12,13 @@ namespace {
 
 constexpr double kJoint_m = 0.012;
 
+// A random number in [0, 1) for each point of a grid; called too often for hash_keys().
 double lattice(std::uint64_t seed, std::int64_t i, std::int64_t j) {
-  return static_cast<double>(
-             hash_keys({seed, static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(j)}) >>
-             11) *
-         0x1.0p-53;
+  std::uint64_t z = seed ^ (static_cast<std::uint64_t>(i) * 0x9E3779B97F4A7C15ULL) ^
+                    (static_cast<std::uint64_t>(j) * 0xC2B2AE3D27D4EB4FULL);
+  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
+  z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
+  return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1.0p-53;
 }
 
 // Smooth noise in [-1, 1] whose features have the size of one unit.
@@ -90,11 +92,13 @@ bool Texture::occupied(const Decal& decal, double margin_m) const {
   });
 }
 
-double Texture::base_albedo(double u_m, double v_m) const {
-  double shade = 0.5 * value_noise(base_.seed, 0.4 * u_m, 0.4 * v_m) +
-                 0.3 * value_noise(base_.seed + 1, 2.1 * u_m, 2.1 * v_m) +
-                 0.2 * value_noise(base_.seed + 2, 9.0 * u_m, 9.0 * v_m);
-  shade *= base_.blotch_contrast;
+double Texture::blotches(double u_m, double v_m) const {
+  return base_.blotch_contrast * (0.5 * value_noise(base_.seed, 0.4 * u_m, 0.4 * v_m) +
+                                  0.3 * value_noise(base_.seed + 1, 2.1 * u_m, 2.1 * v_m) +
+                                  0.2 * value_noise(base_.seed + 2, 9.0 * u_m, 9.0 * v_m));
+}
+
+double Texture::base_albedo(double u_m, double v_m, double shade) const {
   if (base_.tile_width_m > 0) {
     const double row = std::floor(v_m / base_.tile_height_m);
     const bool shifted = base_.bricks && static_cast<std::int64_t>(row) % 2 != 0;
@@ -110,7 +114,7 @@ double Texture::base_albedo(double u_m, double v_m) const {
   return base_.albedo * (1.0 + shade);
 }
 
-double Texture::albedo(double u_m, double v_m) const {
+double Texture::albedo_at(double u_m, double v_m, double shade) const {
   const std::size_t bin = bin_of(u_m);
   if (bin < bins_.size()) {
     for (auto it = bins_[bin].rbegin(); it != bins_[bin].rend(); ++it) {
@@ -120,7 +124,16 @@ double Texture::albedo(double u_m, double v_m) const {
       if (u >= 0 && v >= 0 && u < decal.width_m && v < decal.height_m) return decal.albedo(u, v);
     }
   }
-  return std::clamp(base_albedo(u_m, v_m), 0.02, 0.98);
+  return std::clamp(base_albedo(u_m, v_m, shade), 0.02, 0.98);
+}
+
+double Texture::albedo(double u_m, double v_m, double half_u_m, double half_v_m) const {
+  // Blotches are far larger than a footprint: one sample does for all four.
+  const double shade = blotches(u_m, v_m);
+  return 0.25 * (albedo_at(u_m - half_u_m, v_m - half_v_m, shade) +
+                 albedo_at(u_m + half_u_m, v_m - half_v_m, shade) +
+                 albedo_at(u_m - half_u_m, v_m + half_v_m, shade) +
+                 albedo_at(u_m + half_u_m, v_m + half_v_m, shade));
 }
 
 }  // namespace glint::synth

@@ -40,11 +40,15 @@ class Texture {
   /// True if a decal of this place and size would lie over another one.
   [[nodiscard]] bool occupied(const Decal& decal, double margin_m) const;
 
-  /// Albedo at a point, 0 to 1.
-  [[nodiscard]] double albedo(double u_m, double v_m) const;
+  /// Mean albedo, 0 to 1, over the footprint of a beam round a point: its half widths along u and
+  /// v.
+  [[nodiscard]] double albedo(double u_m, double v_m, double half_u_m = 0.0,
+                              double half_v_m = 0.0) const;
 
  private:
-  [[nodiscard]] double base_albedo(double u_m, double v_m) const;
+  [[nodiscard]] double blotches(double u_m, double v_m) const;
+  [[nodiscard]] double albedo_at(double u_m, double v_m, double shade) const;
+  [[nodiscard]] double base_albedo(double u_m, double v_m, double shade) const;
 
   Base base_;
   std::vector<Decal> decals_;

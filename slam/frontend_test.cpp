@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#include "slam/frontend.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "driver/core/scan_assembler.hpp"
+#include "pcap/synth/simulator.hpp"
+
+namespace glint::slam {
+namespace {
+
+// The scans of a short walk, cast once for all tests.
+class FrontendTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    synth::SimulationOptions options;
+    options.world = "room";
+    options.seconds = 6.0;
+    options.seed = 5;
+    simulator_ = new synth::Simulator(options);
+    scans_ = new std::vector<LidarScan>;
+    LidarScan scan;
+    synth::ScanTruth truth;
+    while (simulator_->next(scan, truth)) {
+      // What the assembler adds to a scan that came whole.
+      scan.columns_expected = scan.columns_received = 1024;
+      scan.end_time = scan.column_time.back();
+      scan.mid_time = scan.column_time[512];
+      scans_->push_back(scan);
+    }
+  }
+  static void TearDownTestSuite() {
+    delete scans_;
+    delete simulator_;
+  }
+
+  // Distance between the estimated and the true way from scan `from` to the present one, m.
+  static double way_error_m(const Pose& start, const LidarScan& from, const OdometryEstimate& now) {
+    const Pose estimated = start.inverse() * now.T_odom_sensor;
+    const Pose truth =
+        simulator_->true_pose(from.end_time).inverse() * simulator_->true_pose(now.stamp);
+    return (estimated.translation_m - truth.translation_m).norm();
+  }
+
+  static LidarScan covered(LidarScan scan) {
+    std::fill(scan.range_mm.data.begin(), scan.range_mm.data.end(), 0U);
+    return scan;
+  }
+
+  static synth::Simulator* simulator_;
+  static std::vector<LidarScan>* scans_;
+  Frontend frontend_{simulator_->info(), {}};
+};
+
+synth::Simulator* FrontendTest::simulator_ = nullptr;
+std::vector<LidarScan>* FrontendTest::scans_ = nullptr;
+
+class FrontendPresets : public FrontendTest, public testing::WithParamInterface<const char*> {};
+
+TEST_P(FrontendPresets, FollowsTheTruth) {
+  Frontend frontend(simulator_->info(), preset_config(GetParam()));
+  EXPECT_EQ(frontend.process(scans_->front()).state, TrackingState::kInit);
+  for (std::size_t i = 1; i < scans_->size(); ++i) {
+    const OdometryEstimate& estimate = frontend.process((*scans_)[i]);
+    EXPECT_EQ(estimate.state, TrackingState::kTracking) << i;
+    EXPECT_EQ(estimate.stamp, (*scans_)[i].end_time);
+    EXPECT_LT(way_error_m({}, scans_->front(), estimate), 0.15) << i;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Presets, FrontendPresets, testing::Values("paper", "full"));
+
+TEST_F(FrontendTest, TheSameScansGiveTheSameBits) {
+  Frontend again(simulator_->info(), {});
+  for (const LidarScan& scan : *scans_) {
+    const Pose a = frontend_.process(scan).T_odom_sensor;
+    const Pose b = again.process(scan).T_odom_sensor;
+    EXPECT_EQ(a.translation_m, b.translation_m);
+    EXPECT_EQ(a.rotation.coeffs(), b.rotation.coeffs());
+  }
+}
+
+TEST_F(FrontendTest, AShortBlackOutIsBridgedAndSaidToBeDegraded) {
+  for (std::size_t i = 0; i < 40; ++i) {
+    const bool dark = i >= 30 && i < 32;
+    const LidarScan& scan = (*scans_)[i];
+    const OdometryEstimate& estimate = frontend_.process(dark ? covered(scan) : scan);
+    if (i > 0)
+      EXPECT_EQ(estimate.state, dark ? TrackingState::kDegraded : TrackingState::kTracking);
+    EXPECT_LT(way_error_m({}, scans_->front(), estimate), 0.2) << i;
+    EXPECT_EQ(estimate.segment, 0U);
+  }
+}
+
+TEST_F(FrontendTest, ALongBlackOutIsLostWithTheLastPoseHeldAndThenFoundAgain) {
+  for (std::size_t i = 0; i < 20; ++i) frontend_.process((*scans_)[i]);
+  for (int i = 0; i < 3; ++i) frontend_.process(covered((*scans_)[20]));
+  const Pose held = frontend_.process(covered((*scans_)[20])).T_odom_sensor;
+  const OdometryEstimate lost = frontend_.process(covered((*scans_)[20]));
+  EXPECT_EQ(lost.state, TrackingState::kLost);
+  EXPECT_EQ(lost.T_odom_sensor.translation_m, held.translation_m);
+  const OdometryEstimate found = frontend_.process((*scans_)[22]);
+  EXPECT_EQ(found.state, TrackingState::kTracking);
+  EXPECT_LT(way_error_m({}, scans_->front(), found), 0.15);
+}
+
+TEST_F(FrontendTest, ASensorCarriedElsewhereRestartsInANewSegment) {
+  synth::SimulationOptions options;
+  options.world = "room";
+  options.seconds = 1.0;
+  options.seed = 99;
+  synth::Simulator elsewhere(options);
+  for (std::size_t i = 0; i < 20; ++i) frontend_.process((*scans_)[i]);
+  LidarScan scan;
+  synth::ScanTruth truth;
+  OdometryEstimate estimate;
+  while (elsewhere.next(scan, truth)) {
+    scan.columns_expected = scan.columns_received = 1024;
+    scan.end_time = scan.column_time.back();
+    scan.mid_time = scan.column_time[512];
+    estimate = frontend_.process(scan);
+  }
+  EXPECT_EQ(estimate.segment, 1U);
+  EXPECT_EQ(estimate.state, TrackingState::kTracking);
+}
+
+TEST_F(FrontendTest, IncompleteScansAreDegradedOrNotUsed) {
+  for (std::size_t i = 0; i < 5; ++i) frontend_.process((*scans_)[i]);
+  LidarScan scan = (*scans_)[5];
+  scan.columns_received = 870;  // 85 %
+  EXPECT_EQ(frontend_.process(scan).state, TrackingState::kDegraded);
+  EXPECT_GT(frontend_.process((*scans_)[6]).inliers, 0);
+  scan = (*scans_)[7];
+  scan.columns_received = 400;  // 39 %
+  const OdometryEstimate& estimate = frontend_.process(scan);
+  EXPECT_EQ(estimate.state, TrackingState::kDegraded);
+  EXPECT_EQ(estimate.inliers, 0);
+}
+
+TEST_F(FrontendTest, StandingStillMakesOneKeyframeAndWalkingMore) {
+  int keyframes = 0;
+  for (std::size_t i = 0; i < 10; ++i) {  // the first second is at rest
+    frontend_.process((*scans_)[i]);
+    keyframes += frontend_.take_keyframe() ? 1 : 0;
+  }
+  EXPECT_EQ(keyframes, 1);
+  for (std::size_t i = 10; i < scans_->size(); ++i) {
+    frontend_.process((*scans_)[i]);
+    const auto keyframe = frontend_.take_keyframe();
+    if (!keyframe) continue;
+    ++keyframes;
+    EXPECT_GT(keyframe->points.size(), 10000U);
+    EXPECT_EQ(keyframe->id, static_cast<std::uint64_t>(keyframes - 1));
+  }
+  EXPECT_GT(keyframes, 4);
+  EXPECT_FALSE(frontend_.take_keyframe());
+}
+
+TEST_F(FrontendTest, KeyframePointsLieOnTheWorld) {
+  double sum_m = 0.0;
+  double count = 0.0;
+  for (std::size_t i = 0; i < scans_->size(); ++i) {
+    frontend_.process((*scans_)[i]);
+    const auto keyframe = frontend_.take_keyframe();
+    if (!keyframe || i == 0) continue;
+    const Pose pose = simulator_->true_pose(keyframe->estimate.stamp);
+    for (std::size_t k = 0; k < keyframe->points.size(); k += 50) {
+      const MapPoint& p = keyframe->points[k];
+      sum_m +=
+          simulator_->scene().distance_to_surface_m(pose * Eigen::Vector3d(p.x_m, p.y_m, p.z_m));
+      ++count;
+    }
+  }
+  EXPECT_LT(sum_m / count, 0.02);
+}
+
+TEST_F(FrontendTest, ResetBeginsANewOrigin) {
+  for (std::size_t i = 0; i < 30; ++i) frontend_.process((*scans_)[i]);
+  frontend_.reset();
+  const OdometryEstimate& estimate = frontend_.process((*scans_)[30]);
+  EXPECT_EQ(estimate.state, TrackingState::kInit);
+  EXPECT_EQ(estimate.segment, 1U);
+  EXPECT_EQ(estimate.T_odom_sensor.translation_m, Eigen::Vector3d::Zero());
+  EXPECT_EQ(frontend_.process((*scans_)[31]).state, TrackingState::kTracking);
+}
+
+}  // namespace
+}  // namespace glint::slam
