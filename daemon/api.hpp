@@ -30,6 +30,8 @@ class Api {
   [[nodiscard]] std::string hello_line() const;
   [[nodiscard]] Json status() const;
   [[nodiscard]] Json pose(const Snapshot& snapshot, PoseFrames frames) const;
+  /// sensor, state and time: what every answer has.
+  [[nodiscard]] Json head() const;
   [[nodiscard]] double scan_rate_hz() const { return runtime_.info().scan_rate_hz; }
   /// Clients connected now, for status.
   void set_client_count(std::size_t count) { client_count_ = count; }
@@ -46,8 +48,6 @@ class Api {
   Json call_resume(const Json& params);
   Json call_reset_odometry(const Json& params);
   void call_get_map(const Request& request, Reply reply);
-  /// sensor, state and time: what every answer has.
-  [[nodiscard]] Json head() const;
   Json post_command(Command command);
 
   boost::asio::io_context& io_;

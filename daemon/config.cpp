@@ -60,6 +60,8 @@ const std::array kKeys{
               "Scale between two levels of the pyramid."},
     ConfigKey{"slam.orb_fast_threshold", &at<&Config::slam, &SlamConfig::orb_fast_threshold>, 1,
               200, "", "", "Contrast of a corner, grey levels of 255."},
+    ConfigKey{"slam.orb_upright", &at<&Config::slam, &SlamConfig::orb_upright>, 0, 0, "", "",
+              "Take the image's up as every keypoint's up."},
     ConfigKey{"slam.match_max_distance", &at<&Config::slam, &SlamConfig::match_max_distance>, 1,
               256, "bits", "", "Largest Hamming distance of a match."},
     ConfigKey{"slam.match_keep_share", &at<&Config::slam, &SlamConfig::match_keep_share>, 0.01, 1,

@@ -133,7 +133,7 @@ MapQuery parse_map_query(const Json& params) {
   if (query.voxel_m > 0.0) query.voxel_m = std::max(query.voxel_m, kMinVoxel_m);
   query.base64 = choice_param(params, "encoding", "base64|json") == "base64";
   if (const Json* since = find_param(params, "since_revision")) {
-    if (!since->is_number_unsigned()) {
+    if (!since->is_number_integer() || *since < 0) {
       throw RpcError(kInvalidParams, "since_revision must be the revision of an earlier answer",
                      "since_revision");
     }

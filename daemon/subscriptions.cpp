@@ -82,7 +82,10 @@ Json Subscriptions::echo() const {
     topics.push_back("status");
     settings["status"] = Json{{"rate_hz", status_->rate_hz}};
   }
-  return Json{{"topics", std::move(topics)}, {"settings", std::move(settings)}};
+  Json out = api_.head();
+  out["topics"] = std::move(topics);
+  out["settings"] = std::move(settings);
+  return out;
 }
 
 void Subscriptions::offer(const std::shared_ptr<const Snapshot>& snapshot) {

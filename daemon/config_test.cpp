@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#include "daemon/config.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <regex>
+
+namespace glint::daemon {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+const std::filesystem::path kConfigDirectory = std::filesystem::path(GLINT_SOURCE_DIR) / "config";
+
+std::string read_file(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+class ConfigTest : public testing::Test {
+ protected:
+  std::string load_error(const std::string& text) {
+    // Tests of this fixture may run beside each other, each in a process.
+    const auto directory = std::filesystem::path(testing::TempDir()) / std::to_string(getpid());
+    std::filesystem::create_directory(directory);
+    const auto file = directory / "config_test.toml";
+    std::ofstream(file) << text;
+    try {
+      load_config(file, config_);
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+    return "";
+  }
+  void TearDown() override {
+    std::filesystem::remove_all(std::filesystem::path(testing::TempDir()) /
+                                std::to_string(getpid()));
+  }
+  std::string setting_error(const std::string& setting) {
+    try {
+      apply_setting(config_, setting);
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+    return "";
+  }
+  Config config_;
+};
+
+TEST_F(ConfigTest, ValuesOfEveryTypeAreRead) {
+  EXPECT_EQ(load_error("[sensor]\nlidar_port = 7600\n[slam]\ndeskew = false\nmap_voxel_m = 1\n"
+                       "[server]\nlisten = \"[::1]:7000\"\n"
+                       "[mount]\nT_base_sensor = [1, 2, 3, 0, 0, 1, 0]\n"),
+            "");
+  EXPECT_EQ(config_.sensor.lidar_port, 7600);
+  EXPECT_FALSE(config_.slam.deskew);
+  EXPECT_EQ(config_.slam.map_voxel_m, 1.0);
+  EXPECT_EQ(config_.server.listen, "[::1]:7000");
+  EXPECT_EQ(config_.mount.T_base_sensor.translation_m, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(config_.mount.T_base_sensor.rotation.z(), 1.0);
+}
+
+TEST_F(ConfigTest, AnUnknownKeyIsAnErrorWithLineAndNearestKey) {
+  EXPECT_THAT(load_error("[slam]\n# comment\norb_feature = 3\n"),
+              AllOf(HasSubstr("config_test.toml:3"), HasSubstr("'slam.orb_feature'"),
+                    HasSubstr("'slam.orb_features'")));
+}
+
+TEST_F(ConfigTest, AWrongTypeIsAnErrorWithLineAndAllowedRange) {
+  EXPECT_THAT(load_error("[sensor]\nlidar_port = \"7502\"\n"),
+              AllOf(HasSubstr("config_test.toml:2"), HasSubstr("a whole number from 0 to 65535")));
+  EXPECT_THAT(load_error("[slam]\norb_features = 1.5\n"), HasSubstr("whole number"));
+  EXPECT_THAT(load_error("[slam]\ndeskew = 1\n"), HasSubstr("true or false"));
+}
+
+TEST_F(ConfigTest, AValueOutOfRangeIsAnErrorWithTheRange) {
+  EXPECT_THAT(load_error("[slam]\nmin_completeness = 1.5\n"), HasSubstr("from 0 to 1"));
+  EXPECT_THAT(load_error("[slam]\nmap_voxel_m = nan\n"), HasSubstr("from 0 to 10 m"));
+  EXPECT_THAT(load_error("[sensor]\nlidar_port = 70000\n"), HasSubstr("65535"));
+  EXPECT_THAT(load_error("[log]\nlevel = \"loud\"\n"), HasSubstr("debug|info|warn|error"));
+}
+
+TEST_F(ConfigTest, AMountThatIsNoPoseIsAnError) {
+  EXPECT_THAT(load_error("[mount]\nT_base_sensor = [0, 0, 0, 0, 0, 1.57, 0]\n"),
+              HasSubstr("qx, qy, qz, qw"));
+  EXPECT_THAT(load_error("[mount]\nT_base_sensor = [0, 0, 0]\n"), HasSubstr("seven numbers"));
+}
+
+TEST_F(ConfigTest, ASyntaxErrorNamesItsLine) {
+  EXPECT_THAT(load_error("[slam]\n\npreset = paper\n"), HasSubstr("config_test.toml:3"));
+}
+
+TEST_F(ConfigTest, AMissingFileIsAnErrorThatNamesIt) {
+  try {
+    load_config("/nonexistent/glint.toml", config_);
+    FAIL();
+  } catch (const ConfigError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("/nonexistent/glint.toml"));
+  }
+}
+
+TEST_F(ConfigTest, AKeyOfALaterVersionIsSaidToBeOne) {
+  EXPECT_THAT(load_error("[map]\non_start = \"continue\"\n"), HasSubstr("not supported"));
+}
+
+TEST_F(ConfigTest, ThePresetIsAppliedBeforeOtherKeysWhereverItStands) {
+  EXPECT_EQ(load_error("[slam]\norb_features = 777\npreset = \"paper\"\n"), "");
+  EXPECT_EQ(config_.slam.orb_features, 777);
+  EXPECT_FALSE(config_.slam.deskew);
+  const std::vector<std::string> settings = {"slam.deskew=true", "slam.preset=paper"};
+  apply_settings(config_, settings);
+  EXPECT_TRUE(config_.slam.deskew);
+}
+
+TEST_F(ConfigTest, SettingsTakeTomlValuesAndBareStrings) {
+  apply_setting(config_, "slam.preset=paper");
+  apply_setting(config_, "state.directory=/var/tmp/glint");
+  apply_setting(config_, "server.unix_socket=\"\"");
+  apply_setting(config_, "server.listen=127.0.0.1:7000");
+  apply_setting(config_, "slam.map_voxel_m=0.25");
+  EXPECT_EQ(config_.slam.preset, "paper");
+  EXPECT_EQ(config_.state.directory, "/var/tmp/glint");
+  EXPECT_EQ(config_.server.unix_socket, "");
+  EXPECT_EQ(config_.server.listen, "127.0.0.1:7000");
+  EXPECT_EQ(config_.slam.map_voxel_m, 0.25);
+}
+
+TEST_F(ConfigTest, BadSettingsNameTheSetting) {
+  EXPECT_THAT(setting_error("slam.deskew"), HasSubstr("KEY=VALUE"));
+  EXPECT_THAT(setting_error("slam.deskew=maybe"), HasSubstr("--set slam.deskew=maybe"));
+  EXPECT_THAT(setting_error("slam.preset=fast"), HasSubstr("paper|full"));
+}
+
+TEST_F(ConfigTest, PrintedAndReadAgainAConfigurationIsTheSame) {
+  apply_setting(config_, "mount.T_base_sensor=[0.1, 0.2, 0.3, 0, 0.6, 0, 0.8]");
+  apply_setting(config_, "slam.min_range_m=0.123456789012345678");
+  const Json before = to_json(config_);
+  const std::string text = to_toml(config_);
+  config_ = {};
+  EXPECT_EQ(load_error(text), "");
+  EXPECT_EQ(to_json(config_), before);
+}
+
+TEST_F(ConfigTest, DefaultsLieInTheirRanges) { EXPECT_EQ(load_error(to_toml(Config{})), ""); }
+
+TEST_F(ConfigTest, TheShippedFileIsTheTableOfKeys) {
+  const auto file = kConfigDirectory / "glint.toml";
+  EXPECT_THAT(read_file(file), testing::EndsWith(to_toml(Config{})))
+      << "run config/regenerate.sh build/glintd";
+  load_config(file, config_);
+  EXPECT_EQ(to_json(config_), to_json(Config{}));
+}
+
+TEST_F(ConfigTest, TheShippedPresetsAreThePresets) {
+  for (const char* preset : {"paper", "full"}) {
+    const auto file = kConfigDirectory / (std::string(preset) + ".toml");
+    Config expected;
+    expected.slam = slam::preset_config(preset);
+    EXPECT_THAT(read_file(file), testing::EndsWith(to_toml(expected, "slam")))
+        << "run config/regenerate.sh build/glintd";
+    Config loaded;
+    loaded.slam.orb_features = 51;
+    load_config(file, loaded);
+    EXPECT_EQ(to_json(loaded), to_json(expected));
+  }
+}
+
+TEST_F(ConfigTest, EveryMemberOfSlamConfigHasAKey) {
+  std::ifstream header(std::filesystem::path(GLINT_SOURCE_DIR) / "slam" / "config.hpp");
+  const std::regex member(R"(^  [\w:]+ (\w+) = .*;.*$)");
+  std::size_t members = 0;
+  for (std::string line; std::getline(header, line);) {
+    std::smatch match;
+    if (!std::regex_match(line, match, member)) continue;
+    ++members;
+    const std::string key = "slam." + match[1].str();
+    EXPECT_TRUE(std::ranges::any_of(config_keys(), [&](const auto& k) { return k.name == key; }))
+        << key << " is missing in the table of daemon/config.cpp";
+  }
+  EXPECT_GT(members, 20U) << "the header is written in another way; this test must follow";
+}
+
+}  // namespace
+}  // namespace glint::daemon

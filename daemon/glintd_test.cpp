@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+//
+// The process: options, exit codes, sentences, signals, notification. GLINTD names the program.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <thread>
+
+#include "daemon/client.hpp"
+#include "daemon/test_room.hpp"
+#include "pcap/capture_writer.hpp"
+
+namespace glint::daemon {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+
+std::string read_file(const fs::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// A glintd on its own, its standard error in a file.
+class Process {
+ public:
+  Process(std::vector<std::string> arguments, const fs::path& directory)
+      : log_(directory / "stderr.txt") {
+    arguments.insert(arguments.begin(), GLINTD);
+    std::vector<char*> argv;
+    for (std::string& a : arguments) argv.push_back(a.data());
+    argv.push_back(nullptr);
+    pid_ = fork();
+    if (pid_ != 0) return;
+    if (std::freopen(log_.c_str(), "w", stderr) == nullptr) _exit(126);
+    execv(GLINTD, argv.data());
+    _exit(127);
+  }
+  ~Process() {
+    if (pid_ > 0) kill(pid_, SIGKILL);
+    if (pid_ > 0) waitpid(pid_, nullptr, 0);
+  }
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+
+  void signal(int number) const { kill(pid_, number); }
+  int wait() {
+    int status = 0;
+    waitpid(pid_, &status, 0);
+    pid_ = -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  [[nodiscard]] std::string log() const { return read_file(log_); }
+
+ private:
+  const fs::path log_;
+  pid_t pid_ = -1;
+};
+
+class GlintdTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    directory_ = fs::path(testing::TempDir()) /
+                 ("glintd_test_" + std::to_string(getpid()) + "_" +
+                  testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::create_directories(directory_);
+    // Free of what the test's own surroundings may have set.
+    for (const char* name : {"NOTIFY_SOCKET", "STATE_DIRECTORY", "RUNTIME_DIRECTORY",
+                             "JOURNAL_STREAM", "WATCHDOG_USEC", "WATCHDOG_PID"}) {
+      unsetenv(name);
+    }
+  }
+  void TearDown() override { fs::remove_all(directory_); }
+
+  fs::path write_capture(int scans) {
+    const SensorInfo info = test::room_sensor();
+    std::ofstream(directory_ / "room.json") << to_metadata_json(info);
+    CaptureWriter writer(directory_ / "room.pcap");
+    std::int64_t time_ns = 1'000'000'000;
+    for (const test::Bytes& packet : test::room_packets(info, scans)) {
+      writer.write({time_ns += 3'000'000}, {IpAddress::v4(10, 0, 0, 2), 7502},
+                   {IpAddress::v4(10, 0, 0, 1), 7502}, packet);
+    }
+    writer.finish();
+    return directory_ / "room.pcap";
+  }
+
+  [[nodiscard]] std::string socket() const { return (directory_ / "g.sock").string(); }
+
+  /// Arguments for a daemon that serves a capture on the Unix socket only.
+  std::vector<std::string> serve_capture(int scans) {
+    return {"--source", "pcap:" + write_capture(scans).string(),
+            "--rate",   "max",
+            "--set",    "server.listen=",
+            "--set",    "server.unix_socket=" + socket(),
+            "--set",    "state.directory=" + (directory_ / "state").string()};
+  }
+
+  /// The first answer for which `done` holds; null after ten seconds.
+  template <class Done>
+  Json poll_status(Done done) {
+    for (int i = 0; i < 500; ++i) {
+      try {
+        Client client(socket());
+        Json status = client.call("get_status");
+        if (done(status)) return status;
+      } catch (const ClientError&) {
+        // Not up yet.
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    return nullptr;
+  }
+
+  int exit_code(const std::vector<std::string>& arguments) {
+    Process process(arguments, directory_);
+    const int code = process.wait();
+    log_ = process.log();
+    return code;
+  }
+
+  fs::path directory_;
+  std::string log_;
+};
+
+TEST_F(GlintdTest, ServesACaptureToItsEndAndStopsCleanly) {
+  Process process(serve_capture(4), directory_);
+  const Json status = poll_status(
+      [](const Json& s) { return s["sensor_state"] == "ENDED" && s["counters"]["poses"] == 4; });
+  ASSERT_FALSE(status.is_null()) << process.log();
+  EXPECT_EQ(status["counters"]["missing_packets"], 0);
+  process.signal(SIGTERM);
+  EXPECT_EQ(process.wait(), 0);
+  EXPECT_THAT(process.log(), HasSubstr("stopped after 4 poses"));
+  EXPECT_FALSE(fs::exists(socket()));
+  const fs::path session = status["session_file"].get<std::string>();
+  EXPECT_TRUE(fs::exists(session));
+  EXPECT_FALSE(fs::exists(session.string() + "-wal"));
+}
+
+TEST_F(GlintdTest, ReloadTellsWhatItCannotChange) {
+  const fs::path config = directory_ / "glint.toml";
+  std::ofstream(config) << "[log]\nlevel = \"info\"\n";
+  auto arguments = serve_capture(1);
+  arguments.insert(arguments.end(), {"--config", config.string()});
+  Process process(arguments, directory_);
+  ASSERT_FALSE(poll_status([](const Json&) { return true; }).is_null()) << process.log();
+  std::ofstream(config) << "[log]\nlevel = \"debug\"\n[slam]\norb_features = 500\n";
+  process.signal(SIGHUP);
+  for (int i = 0; i < 500 && process.log().find("log.level is debug") == std::string::npos; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_THAT(process.log(), AllOf(HasSubstr("/slam/orb_features = 500 takes effect at the next"),
+                                   HasSubstr("log.level is debug")));
+  process.signal(SIGINT);
+  EXPECT_EQ(process.wait(), 0);
+}
+
+TEST_F(GlintdTest, BadConfigurationsExitWith78AndASentence) {
+  EXPECT_EQ(exit_code({"--set", "slam.orb_feature=1", "--check-config"}), 78);
+  EXPECT_THAT(log_, HasSubstr("slam.orb_features"));
+  EXPECT_EQ(exit_code({"--config", "/nonexistent.toml"}), 78);
+  EXPECT_THAT(log_, HasSubstr("/nonexistent.toml"));
+  EXPECT_EQ(exit_code({"--config", "/dev/null"}), 78) << "a live source without metadata";
+  EXPECT_THAT(log_, HasSubstr("sensor.metadata_file"));
+  EXPECT_EQ(exit_code({"--source", "pcap:/nonexistent.pcap"}), 78);
+  EXPECT_EQ(exit_code({"--source", "tape"}), 78);
+  auto arguments = serve_capture(1);
+  arguments.back() = "state.directory=/proc/glint";
+  EXPECT_EQ(exit_code(arguments), 78);
+  EXPECT_THAT(log_, HasSubstr("state.directory"));
+  EXPECT_EQ(exit_code({"--no-such-option"}), 2);
+}
+
+TEST_F(GlintdTest, AGoodConfigurationIsSaidToBeGood) {
+  EXPECT_EQ(exit_code({"--config", "/dev/null", "--check-config"}), 0);
+}
+
+TEST_F(GlintdTest, ASocketInUseExitsWith1AndNamesTheKey) {
+  const auto arguments = serve_capture(1);
+  Process first(arguments, directory_);
+  ASSERT_FALSE(poll_status([](const Json&) { return true; }).is_null()) << first.log();
+  EXPECT_EQ(exit_code(arguments), 1);
+  EXPECT_THAT(log_, HasSubstr("server.unix_socket"));
+  EXPECT_FALSE(poll_status([](const Json&) { return true; }).is_null()) << "the first one lives";
+}
+
+TEST_F(GlintdTest, SystemdIsToldReadyThenFedThenStopping) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  const std::string path = (directory_ / "notify").string();
+  ASSERT_LT(path.size(), sizeof address.sun_path);
+  std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
+  const int notify = ::socket(AF_UNIX, SOCK_DGRAM, 0);
+  const void* generic = &address;
+  ASSERT_EQ(bind(notify, static_cast<const sockaddr*>(generic), sizeof address), 0);
+  const timeval limit{5, 0};
+  setsockopt(notify, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
+  const auto arguments = serve_capture(1);
+  setenv("NOTIFY_SOCKET", path.c_str(), 1);
+  setenv("WATCHDOG_USEC", "400000", 1);
+  Process process(arguments, directory_);
+
+  std::string all;
+  const auto wait_for = [&](const std::string& what) {
+    std::array<char, 4096> buffer{};
+    while (all.find(what) == std::string::npos) {
+      const ssize_t size = recv(notify, buffer.data(), buffer.size(), 0);
+      if (size <= 0) return false;
+      all.append(buffer.data(), static_cast<std::size_t>(size)).append("\n");
+    }
+    return true;
+  };
+  EXPECT_TRUE(wait_for("READY=1")) << all;
+  all.clear();
+  EXPECT_TRUE(wait_for("WATCHDOG=1")) << all;
+  all.clear();
+  EXPECT_TRUE(wait_for("WATCHDOG=1")) << all;
+  EXPECT_TRUE(wait_for("STATUS=")) << all;
+  process.signal(SIGTERM);
+  EXPECT_TRUE(wait_for("STOPPING=1")) << all;
+  EXPECT_EQ(process.wait(), 0);
+  close(notify);
+}
+
+}  // namespace
+}  // namespace glint::daemon

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#pragma once
+
+#include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/post.hpp>
+#include <condition_variable>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "daemon/api.hpp"
+#include "daemon/client.hpp"
+#include "daemon/runtime.hpp"
+#include "daemon/server.hpp"
+#include "daemon/test_room.hpp"
+
+namespace glint::test {
+
+/// A live source that a test feeds. Thread-safe.
+class FakeSource : public PacketSource {
+ public:
+  void feed(const Bytes& bytes) {
+    const std::lock_guard lock(mutex_);
+    waiting_.push_back(bytes);
+    changed_.notify_all();
+  }
+  SourceStatus read(RawPacket& packet) override {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, std::chrono::milliseconds(20),
+                      [&] { return stopped_ || !waiting_.empty(); });
+    if (waiting_.empty()) return stopped_ ? SourceStatus::kEnd : SourceStatus::kIdle;
+    packet.bytes = std::move(waiting_.front());
+    waiting_.pop_front();
+    packet.port = 7502;
+    packet.host_time.ns = ++count_;
+    return SourceStatus::kPacket;
+  }
+  void stop() override {
+    const std::lock_guard lock(mutex_);
+    stopped_ = true;
+    changed_.notify_all();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Bytes> waiting_;
+  std::int64_t count_ = 0;
+  bool stopped_ = false;
+};
+
+/// Everything of glintd but the process: a fake sensor, the threads, a server on a free port.
+class TestDaemon {
+ public:
+  explicit TestDaemon(daemon::Config config = {}, daemon::RuntimeOptions options = {}) {
+    config.server.listen = "127.0.0.1:0";
+    auto source = std::make_unique<FakeSource>();
+    source_ = source.get();
+    runtime_ = std::make_unique<daemon::Runtime>(info_, config, std::move(source), options);
+    api_ = std::make_unique<daemon::Api>(io_, *runtime_, config);
+    server_ = std::make_unique<daemon::Server>(io_, *api_, config);
+    port_ = server_->tcp_port();
+    runtime_->start([this](const auto& snapshot) { server_->publish(snapshot); });
+    server_->start();
+    thread_ = std::thread([this] { io_.run(); });
+  }
+  ~TestDaemon() {
+    boost::asio::post(io_, [this] {
+      server_->close();
+      io_.stop();
+    });
+    thread_.join();
+    runtime_->stop();
+  }
+  TestDaemon(const TestDaemon&) = delete;
+  TestDaemon& operator=(const TestDaemon&) = delete;
+
+  [[nodiscard]] std::string address() const { return "127.0.0.1:" + std::to_string(port_); }
+  [[nodiscard]] const SensorInfo& info() const { return info_; }
+  daemon::Runtime& runtime() { return *runtime_; }
+  FakeSource& source() { return *source_; }
+  void feed(const std::vector<Bytes>& packets) {
+    for (const Bytes& packet : packets) source_->feed(packet);
+  }
+
+  /// Polls get_pose/get_status until `done(result)`; false after ten seconds.
+  template <class Done>
+  bool wait_for(const char* method, Done done) {
+    daemon::Client client(address());
+    for (int i = 0; i < 1000; ++i) {
+      if (done(client.call(method))) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return false;
+  }
+
+ private:
+  const SensorInfo info_ = room_sensor();
+  boost::asio::io_context io_{1};
+  FakeSource* source_ = nullptr;
+  std::unique_ptr<daemon::Runtime> runtime_;
+  std::unique_ptr<daemon::Api> api_;
+  std::unique_ptr<daemon::Server> server_;
+  std::uint16_t port_ = 0;
+  std::thread thread_;
+};
+
+}  // namespace glint::test
