@@ -134,7 +134,7 @@ bool CaptureReader::Impl::take(Bytes record, HostTime time) {
   const ParseStatus status = parse_udp(bytes, udp);
   if (status != ParseStatus::kOk) {
     // The record was counted as a datagram, or as a fragment of one, in good faith.
-    if (!packet.is_fragment) --counters.whole_datagrams;
+    --(packet.is_fragment ? counters.fragments : counters.whole_datagrams);
     ++(status == ParseStatus::kTruncated ? counters.truncated_records : counters.malformed_records);
     return false;
   }
