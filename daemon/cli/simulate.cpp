@@ -1,9 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright 2026 The Glint Authors
+//
 // glint simulate: a capture with ground truth from a simulated sensor in a simulated world.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
 #include <iostream>
 #include <map>
 #include <memory>
+#include <string>
+#include <thread>
+#include <vector>
 
 #include "daemon/cli/command.hpp"
 #include "driver/core/error.hpp"
@@ -12,10 +20,11 @@
 namespace glint::cli {
 namespace {
 
-struct SimulateCommand {
-  synth::SimulationOptions options;
+struct SimulateOptions {
+  synth::SimulationOptions simulation;
   std::string profile = "RNG19_RFL8_SIG16_NIR16";
   std::string out;
+  int threads = 2;
 };
 
 const std::map<std::string, LidarProfile>& profiles() {
@@ -31,41 +40,71 @@ const std::map<std::string, LidarProfile>& profiles() {
   return kProfiles;
 }
 
-void run(SimulateCommand& command) {
-  command.options.sensor.profile = profiles().at(command.profile);
+/// Shares the calls among `threads` threads, the caller's among them.
+synth::ParallelFor parallel_for(int threads) {
+  return [threads](int count, const std::function<void(int)>& work) {
+    std::atomic<int> next = 0;
+    const auto take = [&] {
+      for (int i = next++; i < count; i = next++) work(i);
+    };
+    std::vector<std::jthread> helpers;
+    for (int i = 1; i < threads; ++i) helpers.emplace_back(take);
+    take();
+  };
+}
+
+void show_progress(int done, int all) {
+  std::cerr << fmt::format("\rscan {} of {}", done, all) << (done == all ? "\n" : "") << std::flush;
+}
+
+void run(const SimulateOptions& options) {
+  synth::SimulationOptions simulation = options.simulation;
+  simulation.sensor.profile = profiles().at(options.profile);
+  simulation.parallel_for = parallel_for(options.threads);
+  std::function<void(int, int)> progress;
+  if (isatty(STDERR_FILENO) != 0) progress = show_progress;
   try {
-    synth::simulate(command.options, command.out);
+    synth::simulate(simulation, options.out, progress);
   } catch (const synth::OptionError& error) {
     throw UsageError(error.what());
   }
-  std::cout << command.options.world << ", " << command.options.seconds
-            << " s: capture and truth in " << command.out << '\n';
+  std::cout << fmt::format("{}, {} s, seed {}: capture, metadata and ground truth in {}\n",
+                           simulation.world, simulation.seconds, simulation.seed, options.out);
 }
 
 }  // namespace
 
 void add_simulate(CLI::App& app) {
-  auto command = std::make_shared<SimulateCommand>();
-  CLI::App* sub = app.add_subcommand("simulate", "Make a capture with ground truth");
-  std::string worlds;
-  for (const std::string_view world : synth::world_names()) {
-    worlds += (worlds.empty() ? "" : ", ") + std::string(world);
-  }
+  const auto options = std::make_shared<SimulateOptions>();
+  CLI::App* const command =
+      app.add_subcommand("simulate", "Write a capture with ground truth of a simulated sensor");
+  synth::SimulationOptions& simulation = options->simulation;
   std::vector<std::string> names;
   for (const auto& [name, profile] : profiles()) names.push_back(name);
-  synth::SimulationOptions& options = command->options;
-  sub->add_option("--world", options.world, "One of: " + worlds)->required();
-  sub->add_option("--seconds", options.seconds, "Length of the run, s");
-  sub->add_option("--seed", options.seed, "Layout, motion and noise");
-  sub->add_option("--profile", command->profile, "Packet profile")->check(CLI::IsMember(names));
-  sub->add_option("--out", command->out, "Directory for the files")->required();
-  sub->add_option("--sensor", options.sensor.optics, "os0, os1 or os2");
-  sub->add_option("--beams", options.sensor.beams, "16, 32, 64 or 128");
-  sub->add_option("--columns", options.sensor.columns, "512, 1024 or 2048");
-  sub->add_option("--rate", options.sensor.rate_hz, "Scans a second: 10 or 20");
-  sub->add_option("--threads", options.threads, "Threads to cast with; the result is the same")
-      ->check(CLI::Range(1, 64));
-  sub->callback([command] { run(*command); });
+  command
+      ->add_option("--world", simulation.world,
+                   fmt::format("Where: {}", fmt::join(synth::world_names(), ", ")))
+      ->required();
+  command->add_option("--seconds", simulation.seconds, "How long, s")->capture_default_str();
+  command->add_option("--seed", simulation.seed, "Layout, walk, sensor and noise follow from it")
+      ->capture_default_str();
+  command->add_option("--profile", options->profile, "What the packets hold")
+      ->check(CLI::IsMember(names))
+      ->capture_default_str();
+  command->add_option("--out", options->out, "Directory for the files, made if need be")
+      ->required();
+  command->add_option("--sensor", simulation.sensor.optics, "os0, os1 or os2")
+      ->capture_default_str();
+  command->add_option("--beams", simulation.sensor.beams, "16, 32, 64 or 128")
+      ->capture_default_str();
+  command->add_option("--columns", simulation.sensor.columns, "512, 1024 or 2048")
+      ->capture_default_str();
+  command->add_option("--rate", simulation.sensor.rate_hz, "Scans a second: 10 or 20")
+      ->capture_default_str();
+  command->add_option("--threads", options->threads, "Threads to cast with; the bytes are the same")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  command->callback([options] { run(*options); });
 }
 
 }  // namespace glint::cli

@@ -1,54 +1,57 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright 2026 The Glint Authors
-#include "pcap/synth/decoration.hpp"
+#include <memory>
+#include <numbers>
+
+#include "pcap/synth/shell.hpp"
+#include "pcap/synth/spline_path.hpp"
 #include "pcap/synth/world.hpp"
 
 namespace glint::synth {
 namespace {
 
-constexpr double kLength_m = 80.0;
-constexpr double kEndMargin_m = 5.0;  // Nearer to its ends nobody walks.
+constexpr double kLengthM = 80.0;
+// Nearer to its ends nobody walks.
+constexpr double kEndMarginM = 5.0;
+constexpr double kPointSpacingM = 2.5;
+constexpr double kTurnS = 4.5;
+
+// From one end to the other, straying from the middle by a little.
+std::shared_ptr<const SplinePath> way_along(double middle_m, Random& random) {
+  // A quintic spline of evenly spaced points begins at its third one.
+  constexpr int kSpare = 2;
+  const int steps = static_cast<int>((kLengthM - 2.0 * kEndMarginM) / kPointSpacingM);
+  std::vector<Eigen::Vector2d> points_m;
+  for (int i = -kSpare; i <= steps + kSpare; ++i) {
+    points_m.emplace_back(kEndMarginM + i * kPointSpacingM, middle_m + random.uniform(-0.3, 0.3));
+  }
+  return std::make_shared<const SplinePath>(std::move(points_m), false);
+}
 
 }  // namespace
 
 World make_corridor(std::uint64_t seed) {
   Random random{seed, 0xC0441D04ULL};
-  const double width_m = random.uniform(2.2, 3.0);
-  const double height_m = random.uniform(2.5, 3.0);
-  const Eigen::Vector3d x = Eigen::Vector3d::UnitX();
-  const Eigen::Vector3d y = Eigen::Vector3d::UnitY();
-  const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
-  const Eigen::Vector3d right(0.0, -0.5 * width_m, 0.0);
-  const Eigen::Vector3d left(0.0, 0.5 * width_m, 0.0);
+  const Eigen::Vector3d size_m(kLengthM, random.uniform(2.3, 2.7), random.uniform(2.6, 2.8));
+  std::vector<Surface> surfaces;
+  add_shell(surfaces, size_m, random);
 
-  Scene scene;
-  scene.add({right, x, z, kLength_m, height_m, decorated_wall(kLength_m, height_m, random)});
-  scene.add({left, x, z, kLength_m, height_m, decorated_wall(kLength_m, height_m, random)});
-  scene.add({right, y, z, width_m, height_m, decorated_wall(width_m, height_m, random)});
-  scene.add(
-      {right + kLength_m * x, y, z, width_m, height_m, decorated_wall(width_m, height_m, random)});
-  scene.add({right, x, y, kLength_m, width_m, tiled_floor(kLength_m, width_m, random)});
-  scene.add(
-      {right + height_m * z, x, y, kLength_m, width_m, tiled_ceiling(kLength_m, width_m, random)});
-
-  const double way_m = kLength_m - 2.0 * kEndMargin_m;
-  const double speed_mps = random.uniform(1.1, 1.3);
-  const double aside_m = random.uniform(-0.25, 0.25);
+  const auto path = way_along(0.5 * size_m.y(), random);
+  const double speed_mps = random.uniform(1.15, 1.25);
   Itinerary itinerary;
   itinerary.rest(1.0);
+  itinerary.follow([path](double way_m) { return path->at(way_m); }, path->length_m(), speed_mps);
+  itinerary.turn(std::numbers::pi, kTurnS);
   itinerary.follow(
-      [=](double s) {
-        return PathPoint{kEndMargin_m + s, aside_m, 0.0};
+      [path](double way_m) {
+        PathPoint point = path->at(path->length_m() - way_m);
+        point.heading_rad += std::numbers::pi;
+        return point;
       },
-      way_m, speed_mps);
-  itinerary.turn(M_PI, 4.0);
-  itinerary.follow(
-      [=](double s) {
-        return PathPoint{kEndMargin_m + way_m - s, aside_m, M_PI};
-      },
-      way_m, speed_mps);
-  itinerary.turn(M_PI, 4.0);
-  return {std::move(scene), WalkingMotion(std::move(itinerary), 1.4, seed)};
+      path->length_m(), speed_mps);
+  itinerary.turn(std::numbers::pi, kTurnS);
+  return {Scene(std::move(surfaces)),
+          WalkingMotion(std::move(itinerary), random.uniform(1.15, 1.35), seed)};
 }
 
 }  // namespace glint::synth

@@ -2,106 +2,206 @@
 // Copyright 2026 The Glint Authors
 #include "pcap/synth/decoration.hpp"
 
+#include <algorithm>
+#include <cmath>
+
+#include "pcap/synth/pictures.hpp"
+
 namespace glint::synth {
 namespace {
 
-std::uint64_t new_seed(Random& random) {
-  return static_cast<std::uint64_t>(random.uniform() * 9007199254740992.0);
+// What beams of some millimetres can tell apart at close range.
+constexpr double kTexelM = 0.01;
+
+// Uneven paint, wear and dirt: variations at several scales that every real surface has.
+void weather(Canvas& canvas, const Area& area, double contrast, Random& random) {
+  canvas.blotch(area, random.uniform(1.5, 3.0), contrast, random.next());
+  canvas.blotch(area, random.uniform(0.3, 0.6), 0.7 * contrast, random.next());
+  canvas.blotch(area, 0.08, 0.4 * contrast, random.next());
 }
 
-// Puts `count` decals of random size and place, leaving out those that would lie on another one.
-void scatter(Texture& texture, Random& random, int count, double width_m, double height_m,
-             double low_m, double smallest_m, double largest_m) {
-  for (int i = 0; i < count; ++i) {
-    Decal decal;
-    decal.width_m = random.uniform(smallest_m, largest_m);
-    decal.height_m = decal.width_m * random.uniform(0.6, 1.5);
-    decal.u_m = random.uniform(0.0, width_m - decal.width_m);
-    decal.v_m = random.uniform(low_m, height_m - decal.height_m);
-    decal.pattern = static_cast<Decal::Pattern>(static_cast<int>(random.uniform(0.0, 4.0)));
-    decal.bright = random.uniform(0.6, 0.95);
-    decal.dark = random.uniform(0.04, 0.35);
-    decal.seed = new_seed(random);
-    if (decal.v_m >= low_m && !texture.occupied(decal, 0.05)) texture.add(decal);
-  }
-}
-
-void add_doors(Texture& texture, Random& random, double width_m) {
-  double u_m = random.uniform(1.0, 4.0);
-  while (u_m + 1.1 < width_m) {
-    const double leaf = random.uniform(0.1, 0.8);
-    // Frame, leaf, handle plate and name plate.
-    texture.add({u_m, 0.0, 1.1, 2.15, Decal::Pattern::kPlain, 0.9, random.uniform(0.15, 0.9), 0});
-    texture.add({u_m + 0.08, 0.0, 0.94, 2.07, Decal::Pattern::kPlain, 0.9, leaf, 0});
-    texture.add(
-        {u_m + 0.14, 0.95, 0.07, 0.25, Decal::Pattern::kPlain, 0.9, leaf > 0.4 ? 0.1 : 0.9, 0});
-    if (random.uniform() < 0.7) {
-      texture.add({u_m + 0.35, 1.5, 0.35, 0.2, Decal::Pattern::kText, 0.9, 0.1, new_seed(random)});
+// Tiles in rows; every other row of bricks is shifted by half a brick.
+void draw_tiles(Canvas& canvas, const Area& area, double width_m, double height_m, bool bricks,
+                double contrast, Random& random) {
+  const double albedo = random.uniform(0.25, 0.6);
+  const double joint = albedo * (random.chance(0.5) ? 0.55 : 1.5);
+  const double joint_m = bricks ? 0.015 : 0.02;
+  canvas.fill(area, joint);
+  bool shifted = false;
+  for (double v = 0.0; v < area.height_m; v += height_m, shifted = bricks && !shifted) {
+    for (double u = shifted ? -0.5 * width_m : 0.0; u < area.width_m; u += width_m) {
+      const double left = std::max(0.0, u);
+      const double right = std::min(area.width_m, u + width_m - joint_m);
+      const double top = std::min(area.height_m, v + height_m - joint_m);
+      canvas.fill({area.u_m + left, area.v_m + v, right - left, top - v},
+                  albedo * (1.0 + contrast * random.gaussian()));
     }
-    u_m += random.uniform(2.5, 9.0);
   }
+}
+
+// One section of a wall's background.
+void draw_section(Canvas& canvas, const Area& area, Random& random) {
+  const double kind = random.uniform();
+  if (kind < 0.25) {
+    draw_tiles(canvas, area, 0.25, 0.083, true, 0.13, random);
+  } else if (kind < 0.35) {
+    draw_tiles(canvas, area, 0.3, 0.3, false, 0.05, random);
+  } else if (kind < 0.5) {
+    draw_tiles(canvas, area, random.uniform(0.6, 1.2), area.height_m, false, 0.10, random);
+  } else {
+    canvas.fill(area, random.uniform(0.35, 0.75));
+    const double dado_m = random.uniform(0.8, 1.3);
+    if (random.chance(0.5)) {
+      canvas.fill({area.u_m, area.v_m, area.width_m, dado_m}, random.uniform(0.2, 0.6));
+      canvas.fill({area.u_m, area.v_m + dado_m, area.width_m, 0.06}, random.uniform(0.1, 0.8));
+    }
+  }
+  weather(canvas, area, random.uniform(0.06, 0.16), random);
+}
+
+// Small things between the large ones: sockets, switches, stickers, scratches, words.
+void draw_clutter(Canvas& canvas, const Area& area, Random& random) {
+  const double kind = random.uniform();
+  const double u = area.u_m + random.uniform(0.0, area.width_m);
+  const double v = area.v_m + random.uniform(0.25, 0.9) * area.height_m;
+  const double albedo = random.chance(0.5) ? random.uniform(0.03, 0.2) : random.uniform(0.7, 0.95);
+  if (kind < 0.3) {
+    canvas.fill({u, v, random.uniform(0.08, 0.16), random.uniform(0.08, 0.16)}, albedo);
+  } else if (kind < 0.55) {
+    draw_sign(canvas, {u, v, random.uniform(0.15, 0.35), random.uniform(0.12, 0.3)}, random);
+  } else if (kind < 0.75) {
+    draw_text(canvas, u, v, random.uniform(0.08, 0.25), 2 + random.below(6), albedo, random);
+  } else {
+    canvas.stroke(u, v, u + random.uniform(-0.5, 0.5), v + random.uniform(-0.3, 0.3),
+                  random.uniform(0.015, 0.04), albedo);
+  }
+}
+
+// The next large thing on a wall, from `u_m` to the right. Returns where it ends.
+double draw_fixture(Canvas& canvas, double u_m, double height_m, Random& random) {
+  const double kind = random.uniform();
+  if (kind < 0.30) {
+    const double width_m = random.uniform(0.9, 1.25);
+    draw_door(canvas, {u_m, 0.0, width_m, std::min(2.1, height_m)}, random);
+    return u_m + width_m;
+  }
+  if (kind < 0.65) {
+    const double width_m = random.uniform(0.4, 1.0);
+    draw_poster(canvas,
+                {u_m, random.uniform(0.7, 1.1), width_m,
+                 std::min(width_m * random.uniform(0.8, 1.5), height_m - 1.2)},
+                random);
+    return u_m + width_m;
+  }
+  if (kind < 0.78) {
+    const double width_m = random.uniform(1.0, 2.0);
+    draw_notice_board(canvas, {u_m, random.uniform(0.8, 1.0), width_m, 1.0}, random);
+    return u_m + width_m;
+  }
+  if (kind < 0.88) {
+    // A pipe or duct, painted on.
+    const double width_m = random.uniform(0.06, 0.25);
+    canvas.fill({u_m, 0.0, width_m, height_m}, random.uniform(0.05, 0.85));
+    canvas.fill({u_m, random.uniform(0.5, 2.0), width_m, 0.08}, random.uniform(0.05, 0.9));
+    return u_m + width_m;
+  }
+  const double size_m = random.uniform(0.25, 0.5);
+  draw_sign(canvas, {u_m, random.uniform(1.2, 1.7), size_m, size_m}, random);
+  return u_m + size_m;
 }
 
 }  // namespace
 
-std::shared_ptr<const Texture> decorated_wall(double width_m, double height_m, Random& random) {
-  Texture::Base base;
-  base.albedo = random.uniform(0.35, 0.7);
-  base.blotch_contrast = random.uniform(0.10, 0.25);
-  base.seed = new_seed(random);
-  if (random.uniform() < 0.4) {
-    base.tile_width_m = 0.24;
-    base.tile_height_m = 0.08;
-    base.bricks = true;
+std::shared_ptr<const AlbedoMap> decorated_wall(double width_m, double height_m, Random& random) {
+  Canvas canvas(width_m, height_m, kTexelM, 0.5);
+  for (double u = 0.0; u < width_m;) {
+    const double section_m = random.uniform(4.0, 14.0);
+    draw_section(canvas, {u, 0.0, std::min(section_m, width_m - u), height_m}, random);
+    u += section_m;
   }
-  auto texture = std::make_shared<Texture>(base);
-  // A skirting board along the floor.
-  texture->add(
-      {0.0, 0.0, width_m, 0.10, Decal::Pattern::kPlain, 0.9, random.uniform(0.05, 0.3), 0});
-  add_doors(*texture, random, width_m);
-  const int per_10_m = static_cast<int>(width_m / 10.0) + 1;
-  scatter(*texture, random, 10 * per_10_m, width_m, height_m, 0.7, 0.4, 1.2);   // posters
-  scatter(*texture, random, 18 * per_10_m, width_m, height_m, 0.3, 0.12, 0.4);  // notices, switches
-  return texture;
+  const double skirting = random.uniform(0.05, 0.3);
+  canvas.fill({0.0, 0.0, width_m, 0.1}, skirting);
+  for (double u = random.uniform(0.2, 1.5); u < width_m;) {
+    const double end = draw_fixture(canvas, u, height_m, random);
+    const double gap_m = random.uniform(0.3, 2.2);
+    for (double at = end; at + 0.5 < end + gap_m; at += 0.5) {
+      if (random.chance(0.6)) draw_clutter(canvas, {at, 0.0, 0.5, height_m}, random);
+    }
+    u = end + gap_m;
+  }
+  return std::make_shared<const AlbedoMap>(canvas);
 }
 
-std::shared_ptr<const Texture> tiled_floor(double width_m, double height_m, Random& random) {
-  Texture::Base base;
-  base.albedo = random.uniform(0.25, 0.5);
-  base.blotch_contrast = 0.2;
-  base.tile_width_m = base.tile_height_m = random.uniform(0.3, 0.6);
-  base.seed = new_seed(random);
-  auto texture = std::make_shared<Texture>(base);
-  const int marks = static_cast<int>(width_m * height_m / 6.0);
-  scatter(*texture, random, marks, width_m, height_m, 0.0, 0.15, 0.7);
-  return texture;
+std::shared_ptr<const AlbedoMap> floor_covering(double width_m, double height_m, Random& random) {
+  Canvas canvas(width_m, height_m, kTexelM, 0.4);
+  const double tile_m = random.uniform(0.3, 0.6);
+  if (random.chance(0.7)) {
+    draw_tiles(canvas, canvas.whole(), tile_m, tile_m, false, 0.12, random);
+  } else {
+    draw_tiles(canvas, canvas.whole(), 1.2, 0.14, true, 0.15, random);
+  }
+  weather(canvas, canvas.whole(), 0.12, random);
+  canvas.frame(canvas.whole(), random.uniform(0.08, 0.2), random.uniform(0.1, 0.3));
+  const int marks = static_cast<int>(width_m * height_m / 3.0);
+  for (int i = 0; i < marks; ++i) {
+    const double u = random.uniform(0.0, width_m);
+    const double v = random.uniform(0.0, height_m);
+    const double albedo =
+        random.chance(0.5) ? random.uniform(0.05, 0.15) : random.uniform(0.65, 0.9);
+    if (random.chance(0.5)) {
+      draw_stain(canvas, u, v, random.uniform(0.1, 0.5), random);
+    } else if (random.chance(0.5)) {
+      canvas.stroke(u, v, u + random.uniform(-0.8, 0.8), v + random.uniform(-0.8, 0.8),
+                    random.uniform(0.03, 0.08), albedo);
+    } else {
+      draw_text(canvas, u, v, random.uniform(0.12, 0.3), 1 + random.below(5), albedo, random);
+    }
+  }
+  return std::make_shared<const AlbedoMap>(canvas);
 }
 
-std::shared_ptr<const Texture> tiled_ceiling(double width_m, double height_m, Random& random) {
-  Texture::Base base;
-  base.albedo = random.uniform(0.6, 0.8);
-  base.blotch_contrast = 0.05;
-  base.tile_width_m = base.tile_height_m = 0.625;
-  base.tile_contrast = 0.05;
-  base.seed = new_seed(random);
-  auto texture = std::make_shared<Texture>(base);
-  // Lamps, vents, detectors.
-  const int fittings = static_cast<int>(width_m * height_m / 5.0);
-  scatter(*texture, random, fittings, width_m, height_m, 0.0, 0.15, 0.6);
-  return texture;
+std::shared_ptr<const AlbedoMap> panel_ceiling(double width_m, double height_m, Random& random) {
+  Canvas canvas(width_m, height_m, kTexelM, 0.7);
+  const double panel_m = 0.6;
+  draw_tiles(canvas, canvas.whole(), panel_m, panel_m, false, 0.04, random);
+  weather(canvas, canvas.whole(), 0.05, random);
+  for (double v = 0.0; v < height_m; v += panel_m) {
+    for (double u = 0.0; u < width_m; u += panel_m) {
+      const Area panel = Area{u, v, panel_m, panel_m}.inset(0.05);
+      const double kind = random.uniform();
+      if (kind < 0.10) {
+        // A lamp's cover: bright, with dark ribs.
+        canvas.fill(panel, 0.9);
+        for (double rib = 0.1; rib < panel.width_m; rib += 0.1) {
+          canvas.fill({panel.u_m + rib, panel.v_m, 0.02, panel.height_m}, 0.25);
+        }
+      } else if (kind < 0.15) {
+        for (double slot = 0.0; slot < panel.height_m; slot += 0.06) {
+          canvas.fill({panel.u_m, panel.v_m + slot, panel.width_m, 0.03}, 0.08);
+        }
+      } else if (kind < 0.22) {
+        canvas.disc(u + 0.3, v + 0.3, random.uniform(0.05, 0.12), random.uniform(0.05, 0.3));
+      } else if (kind < 0.27) {
+        draw_stain(canvas, u + 0.3, v + 0.3, 0.3, random);
+      }
+    }
+  }
+  return std::make_shared<const AlbedoMap>(canvas);
 }
 
-std::shared_ptr<const Texture> furniture(Random& random) {
-  Texture::Base base;
-  base.albedo = random.uniform(0.15, 0.8);
-  base.blotch_contrast = 0.15;
-  base.tile_width_m = random.uniform(0.4, 0.7);
-  base.tile_height_m = random.uniform(0.3, 0.6);
-  base.tile_contrast = random.uniform(0.1, 0.4);
-  base.seed = new_seed(random);
-  auto texture = std::make_shared<Texture>(base);
-  scatter(*texture, random, 12, 2.0, 1.8, 0.0, 0.08, 0.35);
-  return texture;
+std::shared_ptr<const AlbedoMap> furniture_side(double width_m, double height_m, Random& random) {
+  Canvas canvas(width_m, height_m, kTexelM, 0.4);
+  const double kind = random.uniform();
+  if (kind < 0.35) {
+    draw_shelf(canvas, canvas.whole(), random);
+  } else if (kind < 0.75) {
+    draw_cabinet(canvas, canvas.whole(), random);
+  } else {
+    draw_tiles(canvas, canvas.whole(), 1.5 * width_m, random.uniform(0.1, 0.2), false, 0.2, random);
+    draw_sign(canvas, {0.2 * width_m, 0.4 * height_m, 0.6 * width_m, 0.35 * height_m}, random);
+  }
+  weather(canvas, canvas.whole(), 0.08, random);
+  return std::make_shared<const AlbedoMap>(canvas);
 }
 
 }  // namespace glint::synth

@@ -4,18 +4,20 @@
 
 #include <memory>
 
+#include "pcap/synth/albedo_map.hpp"
 #include "pcap/synth/random.hpp"
-#include "pcap/synth/texture.hpp"
 
+// Whole surfaces of inhabited buildings, each different: width and height in metres, v upwards.
 namespace glint::synth {
 
-/// A wall of an inhabited building: paint with blotches, doors, posters, notices, signs and marks
-/// in random places. `width_m` by `height_m`, v upwards from the floor.
-std::shared_ptr<const Texture> decorated_wall(double width_m, double height_m, Random& random);
-/// A floor or ceiling of tiles; floors also carry marks and stains.
-std::shared_ptr<const Texture> tiled_floor(double width_m, double height_m, Random& random);
-std::shared_ptr<const Texture> tiled_ceiling(double width_m, double height_m, Random& random);
-/// Furniture: plain panels with handles, labels and shelves of things.
-std::shared_ptr<const Texture> furniture(Random& random);
+/// A wall in sections of paint, brick, panels or tiles, with doors, posters, notice boards, signs,
+/// pipes, sockets and marks in random places.
+std::shared_ptr<const AlbedoMap> decorated_wall(double width_m, double height_m, Random& random);
+/// Tiles or boards, with border, markings and stains.
+std::shared_ptr<const AlbedoMap> floor_covering(double width_m, double height_m, Random& random);
+/// Panels with lamps, vents and detectors.
+std::shared_ptr<const AlbedoMap> panel_ceiling(double width_m, double height_m, Random& random);
+/// A side of a piece of furniture: shelf, cabinet or crate.
+std::shared_ptr<const AlbedoMap> furniture_side(double width_m, double height_m, Random& random);
 
 }  // namespace glint::synth

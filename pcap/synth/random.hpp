@@ -27,14 +27,19 @@ class Random {
   Random(std::initializer_list<std::uint64_t> keys) : state_(hash_keys(keys)) {}
 
   /// Uniform in [0, 1).
-  double uniform() {
+  double uniform() { return static_cast<double>(next() >> 11) * 0x1.0p-53; }
+  double uniform(double low, double high) { return low + (high - low) * uniform(); }
+  /// 0 ... count - 1.
+  int below(int count) { return static_cast<int>(uniform() * count); }
+  bool chance(double probability) { return uniform() < probability; }
+  /// 64 random bits, e.g. as another sequence's key.
+  std::uint64_t next() {
     state_ += 0x9E3779B97F4A7C15ULL;
     std::uint64_t z = state_;
     z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
     z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
-    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1.0p-53;
+    return z ^ (z >> 31);
   }
-  double uniform(double low, double high) { return low + (high - low) * uniform(); }
   /// Normal with mean 0 and standard deviation 1 (Box-Muller).
   double gaussian() {
     const double u = 1.0 - uniform();

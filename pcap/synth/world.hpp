@@ -25,9 +25,9 @@ std::span<const std::string_view> world_names();
 World make_world(std::string_view name, std::uint64_t seed);
 
 /// A straight corridor, 80 m long: flat walls that carry only pictures, so that geometry says
-/// nothing along the axis while both ends are out of range or far.
+/// nothing along the axis while both ends are far.
 World make_corridor(std::uint64_t seed);
-/// A furnished room, 12 m by 9 m.
+/// A furnished room, 12 m by 9 m, and a closed way round its middle.
 World make_room(std::uint64_t seed);
 
 }  // namespace glint::synth
