@@ -88,8 +88,9 @@ TEST_F(FrontendTest, AShortBlackOutIsBridgedAndSaidToBeDegraded) {
     const bool dark = i >= 30 && i < 32;
     const LidarScan& scan = (*scans_)[i];
     const OdometryEstimate& estimate = frontend_.process(dark ? covered(scan) : scan);
-    if (i > 0)
+    if (i > 0) {
       EXPECT_EQ(estimate.state, dark ? TrackingState::kDegraded : TrackingState::kTracking);
+    }
     EXPECT_LT(way_error_m({}, scans_->front(), estimate), 0.2) << i;
     EXPECT_EQ(estimate.segment, 0U);
   }

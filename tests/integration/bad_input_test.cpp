@@ -21,7 +21,6 @@ namespace fs = std::filesystem;
 using test::CommandResult;
 using test::run_glint;
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 constexpr int kDone = 0;
 constexpr int kUsage = 2;
