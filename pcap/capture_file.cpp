@@ -71,7 +71,7 @@ std::FILE* open_capture_file(const std::filesystem::path& file) {
   std::FILE* const stream =
       fopencookie(patched.get(), "rb", {read_patched, nullptr, nullptr, close_patched});
   if (stream == nullptr) return nullptr;
-  patched.release();  // Owned by the stream from here on.
+  static_cast<void>(patched.release());  // Owned by the stream from here on.
   std::setvbuf(stream, nullptr, _IOFBF, std::size_t{1} << 16U);
   return stream;
 }

@@ -3,11 +3,11 @@
 #pragma once
 
 #include <array>
-#include <compare>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
 
 namespace glint {
 
@@ -18,9 +18,14 @@ struct IpAddress {
 
   /// Reads dotted IPv4 or colon IPv6 text (no host names, no zones). Null for anything else.
   static std::optional<IpAddress> parse(std::string_view text);
-  static IpAddress v4(std::uint8_t a, std::uint8_t b, std::uint8_t c, std::uint8_t d);
+  static constexpr IpAddress v4(std::uint8_t a, std::uint8_t b, std::uint8_t c, std::uint8_t d) {
+    return {false, {a, b, c, d}};
+  }
 
-  friend auto operator<=>(const IpAddress&, const IpAddress&) = default;
+  friend bool operator==(const IpAddress&, const IpAddress&) = default;
+  friend bool operator<(const IpAddress& a, const IpAddress& b) {
+    return std::tie(a.is_v6, a.bytes) < std::tie(b.is_v6, b.bytes);
+  }
 };
 
 /// An address and a UDP port.
@@ -28,7 +33,7 @@ struct Endpoint {
   IpAddress address;
   std::uint16_t port = 0;
 
-  friend auto operator<=>(const Endpoint&, const Endpoint&) = default;
+  friend bool operator==(const Endpoint&, const Endpoint&) = default;
 };
 
 /// "192.0.2.1", "2001:db8::1".
