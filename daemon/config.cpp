@@ -21,7 +21,7 @@ auto at(Config& config) -> decltype((config.*Group.*Member)) {
 
 constexpr double kMaxPort = 65535.0;
 
-const std::array kKeys{
+constexpr std::array kKeys{
     ConfigKey{"sensor.metadata_file", &at<&Config::sensor, &Config::Sensor::metadata_file>, 0, 0,
               "", "",
               "Metadata JSON of the sensor; needed with a live sensor, --meta goes before it."},

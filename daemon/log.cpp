@@ -13,7 +13,7 @@
 namespace glint::daemon {
 namespace {
 
-constexpr std::int64_t kQuiet_ns = 10 * kNsPerSecond;
+constexpr std::int64_t kQuietNs = 10 * kNsPerSecond;
 
 /// "<4>": how the journal learns the severity of a line (sd-daemon(3)).
 class JournalPriority : public spdlog::custom_flag_formatter {
@@ -54,7 +54,7 @@ void set_log_level(const std::string& level) { spdlog::set_level(spdlog::level::
 
 bool LogLimiter::allow(const std::string& cause, std::int64_t now_ns) {
   const auto [last, fresh] = last_ns_.try_emplace(cause, now_ns);
-  if (!fresh && now_ns - last->second < kQuiet_ns) return false;
+  if (!fresh && now_ns - last->second < kQuietNs) return false;
   last->second = now_ns;
   return true;
 }

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kWait{100};
 /// Counters are published this often when no scan does it.
-constexpr std::int64_t kCounterPeriod_ns = 200'000'000;
+constexpr std::int64_t kCounterPeriodNs = 200'000'000;
 
 template <class... Handlers>
 struct Overloaded : Handlers... {
@@ -120,7 +120,7 @@ void OdometryThread::apply_commands() {
 }
 
 void OdometryThread::publish_counters() {
-  if (steady_now_ns() - published_ns_ > kCounterPeriod_ns) publish();
+  if (steady_now_ns() - published_ns_ > kCounterPeriodNs) publish();
 }
 
 std::shared_ptr<const Snapshot> OdometryThread::publish() {

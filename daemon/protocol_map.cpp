@@ -20,9 +20,9 @@ constexpr std::size_t kPageBytes = 900'000;
 constexpr std::size_t kBase64PointBytes = 22;
 constexpr std::size_t kJsonPointBytes = 104;
 constexpr std::size_t kTileBytes = 120;
-constexpr double kMaxCoordinate_m = 1e6;
+constexpr double kMaxCoordinateM = 1e6;
 /// Voxels finer than this do not fit into a tile's key, and are finer than any map kept.
-constexpr double kMinVoxel_m = 0.01;
+constexpr double kMinVoxelM = 0.01;
 
 static_assert(sizeof(slam::MapPoint) == 16, "points go out as they lie in memory");
 
@@ -51,7 +51,7 @@ Eigen::Vector3d corner(const Json& region, const char* name) {
   Eigen::Vector3d out;
   bool ok = found != region.end() && found->is_array() && found->size() == 3;
   for (std::size_t i = 0; ok && i < 3; ++i) {
-    ok = (*found)[i].is_number() && std::abs((*found)[i].get<double>()) <= kMaxCoordinate_m;
+    ok = (*found)[i].is_number() && std::abs((*found)[i].get<double>()) <= kMaxCoordinateM;
     if (ok) out[static_cast<Eigen::Index>(i)] = (*found)[i].get<double>();
   }
   if (!ok) {
@@ -130,7 +130,7 @@ Json points_json(const std::vector<slam::MapPoint>& points, bool base64) {
 MapQuery parse_map_query(const Json& params) {
   MapQuery query;
   query.voxel_m = number_param(params, "voxel_m", 0.0, 0.0, 100.0);
-  if (query.voxel_m > 0.0) query.voxel_m = std::max(query.voxel_m, kMinVoxel_m);
+  if (query.voxel_m > 0.0) query.voxel_m = std::max(query.voxel_m, kMinVoxelM);
   query.base64 = choice_param(params, "encoding", "base64|json") == "base64";
   if (const Json* since = find_param(params, "since_revision")) {
     if (!since->is_number_integer() || *since < 0) {

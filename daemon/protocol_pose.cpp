@@ -9,7 +9,7 @@
 namespace glint::daemon {
 namespace {
 
-constexpr double kMaxPrediction_ms = 200.0;
+constexpr double kMaxPredictionMs = 200.0;
 
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
@@ -132,7 +132,7 @@ Json get_pose(const Json& params, const Snapshot& snapshot, const PoseContext& c
               std::int64_t now_ns) {
   const PoseFrames frames = pose_frames(params);
   const auto at = time_param(params, "at");
-  const double predict_ms = number_param(params, "predict_ms", 0.0, 0.0, kMaxPrediction_ms);
+  const double predict_ms = number_param(params, "predict_ms", 0.0, 0.0, kMaxPredictionMs);
   if (at && predict_ms > 0.0) {
     throw RpcError(kInvalidParams, "at_ns and predict_ms exclude each other", "predict_ms");
   }

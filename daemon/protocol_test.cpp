@@ -90,19 +90,19 @@ class PoseJsonTest : public testing::Test {
     e.velocity << 1.0, 0.5, 0.0, 0.0, 0.0, 0.3;
     e.covariance.setIdentity();
     e.state = slam::TrackingState::kTracking;
-    snapshot_.arrival_ns = kArrival_ns;
+    snapshot_.arrival_ns = kArrivalNs;
     snapshot_.correction = {{so3_exp({0, 0, 0.5}), {10, 0, 0}}, 3};
     context_.T_base_sensor = {so3_exp({0, 0.3, 0}), {0.2, 0.0, 0.9}};
     context_.scan_period_ns = 100'000'000;
   }
   Json pose(const Json& params, std::int64_t age_ns = 0) {
-    return get_pose(params, snapshot_, context_, kArrival_ns + age_ns);
+    return get_pose(params, snapshot_, context_, kArrivalNs + age_ns);
   }
   static Eigen::Vector3d vector(const Json& v) {
     return {v[0].get<double>(), v[1].get<double>(), v[2].get<double>()};
   }
 
-  static constexpr std::int64_t kArrival_ns = 5'000'000'000;
+  static constexpr std::int64_t kArrivalNs = 5'000'000'000;
   Snapshot snapshot_;
   PoseContext context_;
 };
@@ -177,7 +177,7 @@ TEST_F(PoseJsonTest, ATrajectoryIsPagedWithoutLossOrRepetition) {
   std::int64_t expected = 0;
   int pages = 0;
   while (true) {
-    const Json page = get_trajectory(params, snapshot_, context_, kArrival_ns);
+    const Json page = get_trajectory(params, snapshot_, context_, kArrivalNs);
     EXPECT_LT(page.dump().size(), kMaxLineBytes);
     for (const Json& p : page["poses"]) EXPECT_EQ(p["t_ns"], expected++);
     ++pages;
@@ -186,10 +186,10 @@ TEST_F(PoseJsonTest, ATrajectoryIsPagedWithoutLossOrRepetition) {
   }
   EXPECT_EQ(expected, 4500);
   EXPECT_EQ(pages, 3);
-  const Json since = get_trajectory({{"since_ns", 4497}}, snapshot_, context_, kArrival_ns);
+  const Json since = get_trajectory({{"since_ns", 4497}}, snapshot_, context_, kArrivalNs);
   ASSERT_EQ(since["poses"].size(), 2U);
   EXPECT_EQ(since["poses"][0]["t_ns"], 4498);
-  EXPECT_THROW(get_trajectory({{"cursor", "x"}}, snapshot_, context_, kArrival_ns), RpcError);
+  EXPECT_THROW(get_trajectory({{"cursor", "x"}}, snapshot_, context_, kArrivalNs), RpcError);
 }
 
 TEST_F(PoseJsonTest, StatusHasStateTimeAndCountersAndNothingUnknown) {
@@ -201,7 +201,7 @@ TEST_F(PoseJsonTest, StatusHasStateTimeAndCountersAndNothingUnknown) {
   runtime.map = map;
   ServiceStatus service;
   service.scan_period_ns = context_.scan_period_ns;
-  const Json json = status_json(runtime, service, kArrival_ns);
+  const Json json = status_json(runtime, service, kArrivalNs);
   EXPECT_EQ(json["sensor"], 0);
   EXPECT_EQ(json["state"], "TRACKING");
   EXPECT_EQ(json["t_ns"], 1'000'000'000);

@@ -14,7 +14,7 @@ namespace {
 /// A live queue bridges two seconds, a machine's worst hiccup; in replay it only smooths.
 constexpr int kLiveScans = 20;
 constexpr int kReplayScans = 4;
-constexpr std::int64_t kMinSilence_ns = 300'000'000;
+constexpr std::int64_t kMinSilenceNs = 300'000'000;
 constexpr std::chrono::milliseconds kWorkerWait{500};
 
 std::size_t packet_capacity(const SensorInfo& info, bool lossless) {
@@ -43,7 +43,7 @@ Runtime::~Runtime() { stop(); }
 
 void Runtime::start(ScanListener on_scan) {
   const ReceiveThread::Options receive{options_.lossless,
-                                       std::max(3 * info_.scan_period_ns(), kMinSilence_ns)};
+                                       std::max(3 * info_.scan_period_ns(), kMinSilenceNs)};
   receive_ = std::make_unique<ReceiveThread>(*source_, receive, crossings_, receive_heartbeat_);
   odometry_ = std::make_unique<OdometryThread>(info_, config_, options_.lossless, crossings_,
                                                odometry_heartbeat_, std::move(on_scan));

@@ -65,7 +65,13 @@ Server::Server(boost::asio::io_context& io, Api& api, const Config& config)
   if (!path.empty()) listen_unix(path);
 }
 
-Server::~Server() { close(); }
+Server::~Server() {
+  try {
+    close();
+  } catch (const std::exception&) {
+    // The sockets close with their objects.
+  }
+}
 
 void Server::listen_tcp(const std::string& address) {
   const auto target = parse_host_port(address);

@@ -15,15 +15,15 @@
 namespace glint::daemon {
 namespace {
 
-constexpr std::int64_t kSupervision_ns = kNsPerSecond;
+constexpr std::int64_t kSupervisionNs = kNsPerSecond;
 /// No thread works on one thing for so long.
-constexpr std::int64_t kThreadLimit_ns = 10 * kNsPerSecond;
+constexpr std::int64_t kThreadLimitNs = 10 * kNsPerSecond;
 
 /// Between two looks: often enough for the watchdog, and for the log.
 std::chrono::nanoseconds supervision_period() {
   const std::int64_t watchdog_ns = systemd::watchdog_period_ns();
-  return std::chrono::nanoseconds(watchdog_ns > 0 ? std::min(watchdog_ns, kSupervision_ns)
-                                                  : kSupervision_ns);
+  return std::chrono::nanoseconds(watchdog_ns > 0 ? std::min(watchdog_ns, kSupervisionNs)
+                                                  : kSupervisionNs);
 }
 
 RuntimeOptions with_session(RuntimeOptions options, const Config& config) {
@@ -110,7 +110,7 @@ void Service::supervise() {
     spdlog::critical("stopping: the packet source broke: {}", status.source_error);
     return stop(1);
   }
-  if (runtime_.alive(kThreadLimit_ns)) systemd::notify_watchdog();
+  if (runtime_.alive(kThreadLimitNs)) systemd::notify_watchdog();
 
   timer_.expires_after(supervision_period());
   timer_.async_wait([this](boost::system::error_code error) {

@@ -12,7 +12,7 @@ namespace glint::daemon {
 namespace {
 
 /// How long a client that was sent away may take to notice.
-constexpr std::int64_t kFarewell_ns = 2'000'000'000;
+constexpr std::int64_t kFarewellNs = 2'000'000'000;
 
 }  // namespace
 
@@ -175,7 +175,7 @@ void Session::tick(std::int64_t now_ns) {
   write();
   const bool idle = subscriptions_.empty() && now_ns - last_request_ns_ > limits_.idle_ns;
   const bool stalled = !writing_.empty() && now_ns - last_progress_ns_ > limits_.stall_ns;
-  const bool gone = hung_up_ && now_ns - last_progress_ns_ > kFarewell_ns;
+  const bool gone = hung_up_ && now_ns - last_progress_ns_ > kFarewellNs;
   if (idle || stalled || gone) close();
 }
 

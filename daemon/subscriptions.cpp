@@ -10,10 +10,10 @@ namespace glint::daemon {
 namespace {
 
 constexpr std::size_t kMaxWaiting = 64;
-constexpr double kMinRate_hz = 0.01;
-constexpr double kMaxRate_hz = 1000.0;
-constexpr double kDefaultStatusRate_hz = 1.0;
-constexpr double kMaxStatusRate_hz = 10.0;
+constexpr double kMinRateHz = 0.01;
+constexpr double kMaxRateHz = 1000.0;
+constexpr double kDefaultStatusRateHz = 1.0;
+constexpr double kMaxStatusRateHz = 10.0;
 
 struct Topics {
   bool pose = false;
@@ -43,7 +43,7 @@ std::int64_t period_ns(double rate_hz) { return std::llround(1e9 / rate_hz); }
 Json Subscriptions::subscribe(const Json& params) {
   const Topics topics = parse_topics(params, true);
   const PoseFrames frames = pose_frames(params);
-  const double asked_hz = number_param(params, "rate_hz", 0.0, kMinRate_hz, kMaxRate_hz);
+  const double asked_hz = number_param(params, "rate_hz", 0.0, kMinRateHz, kMaxRateHz);
   if (topics.pose) {
     PoseTopic topic;
     topic.frames = frames;
@@ -54,7 +54,7 @@ Json Subscriptions::subscribe(const Json& params) {
   }
   if (topics.status) {
     StatusTopic topic;
-    topic.rate_hz = std::min(asked_hz == 0.0 ? kDefaultStatusRate_hz : asked_hz, kMaxStatusRate_hz);
+    topic.rate_hz = std::min(asked_hz == 0.0 ? kDefaultStatusRateHz : asked_hz, kMaxStatusRateHz);
     topic.period_ns = period_ns(topic.rate_hz);
     status_ = topic;
   }

@@ -11,13 +11,13 @@
 namespace glint::test {
 namespace {
 
-constexpr double kHalfWidth_m = 5.0;
-constexpr double kHalfHeight_m = 2.0;
-constexpr double kSpeed_m_per_scan = 0.05;
+constexpr double kHalfWidthM = 5.0;
+constexpr double kHalfHeightM = 2.0;
+constexpr double kSpeedMPerScan = 0.05;
 
 /// Distance from `origin` along `direction` to the wall of the box.
 double wall_distance_m(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
-  const Eigen::Vector3d half(kHalfWidth_m, kHalfWidth_m, kHalfHeight_m);
+  const Eigen::Vector3d half(kHalfWidthM, kHalfWidthM, kHalfHeightM);
   double nearest = std::numeric_limits<double>::max();
   for (Eigen::Index i = 0; i < 3; ++i) {
     if (direction[i] == 0.0) continue;
@@ -41,7 +41,7 @@ std::uint16_t brightness(const Eigen::Vector3d& point) {
 LidarScan room_scan(const SensorInfo& info, const XyzLut& lut, int k) {
   LidarScan scan{PacketFormat(info)};
   scan.frame_id = static_cast<std::uint16_t>(k);
-  const Eigen::Vector3d position(kSpeed_m_per_scan * k, 0.0, 0.0);
+  const Eigen::Vector3d position(kSpeedMPerScan * k, 0.0, 0.0);
   for (int m = 0; m < info.columns_per_frame; ++m) {
     scan.column_time[static_cast<std::size_t>(m)] = nominal_time(info, k, m);
     scan.column_status[static_cast<std::size_t>(m)] = 1;
