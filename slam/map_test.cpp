@@ -45,6 +45,7 @@ TEST(VoxelMap, OnlyChangedTilesAreCopied) {
 TEST(VoxelMap, IsBoundedAndCountsWhatItRefuses) {
   VoxelMap map(0.1, 3);
   std::vector<MapPoint> points;
+  points.reserve(5);
   for (int i = 0; i < 5; ++i) points.push_back({static_cast<float>(i), -20.0F, 0.0F, 0.0F});
   map.insert({}, points);
   EXPECT_EQ(map.point_count(), 3U);

@@ -43,7 +43,7 @@ AlbedoMap::Level AlbedoMap::halved(const Level& fine) {
 
 double AlbedoMap::sample(double u_m, double v_m, double footprint_m) const {
   const double wanted = std::log2(std::max(1.0, footprint_m / texel_m_));
-  const auto index = std::min(static_cast<std::size_t>(wanted + 0.5), levels_.size() - 1);
+  const auto index = std::min(static_cast<std::size_t>(std::lround(wanted)), levels_.size() - 1);
   const Level& level = levels_[index];
   const double texel_m = texel_m_ * static_cast<double>(1U << index);
   // Texel (i, j) has its centre at (i + 0.5, j + 0.5) texels.

@@ -28,8 +28,12 @@ void draw_letter(Canvas& canvas, double u_m, double v_m, double height_m, double
   int from = random.below(6);
   for (int i = 0; i < strokes; ++i) {
     const int to = (from + 1 + random.below(5)) % 6;
+    // Points 0 to 5 are the corners of two squares, one on the other.
     const auto u = [&](int point) { return u_m + width_m * (point % 2); };
-    const auto v = [&](int point) { return v_m + 0.5 * height_m * (point / 2); };
+    const auto v = [&](int point) {
+      const int row = point / 2;
+      return v_m + 0.5 * height_m * row;
+    };
     canvas.stroke(u(from), v(from), u(to), v(to), 0.17 * height_m, albedo);
     from = to;
   }

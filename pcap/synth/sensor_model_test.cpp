@@ -20,7 +20,7 @@ class SensorModelTest : public testing::Test {
   }
 
   const SensorInfo info_ = make_sensor({}, 1);
-  const NoiseOptions noise_;
+  const NoiseOptions noise_{};
   const SensorModel model_{info_, noise_, 1};
   const Eigen::Vector3d ahead_ = Eigen::Vector3d::UnitX();
   Surface wall_;
