@@ -23,14 +23,15 @@ struct SlamConfig {
   /// rigid, its pose is that of its middle and is extrapolated to its end.
   bool deskew = true;
 
-  /// ORB: most keypoints, pyramid levels, scale between levels, FAST threshold. Two levels: on 64 rows
-  /// the descriptor's 31-pixel patch fits no further one, and coarse keypoints blur the motion.
+  /// ORB: most keypoints, pyramid levels, scale between levels, FAST threshold. Two levels: on 64
+  /// rows the descriptor's 31-pixel patch fits no further one, and coarse keypoints blur the
+  /// motion.
   int orb_features = 1000;
   int orb_levels = 2;
   double orb_scale = 1.2;
   int orb_fast_threshold = 20;
-  /// Descriptors are not turned into the corner's direction: a sensor that does not roll much between
-  /// two scans matches better, as direction is then part of what is compared.
+  /// Descriptors are not turned into the corner's direction: a sensor that does not roll much
+  /// between two scans matches better, as direction is then part of what is compared.
   bool orb_upright = true;
 
   /// Largest Hamming distance of a match, share of the best ones kept, and at most how many.

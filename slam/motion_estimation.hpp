@@ -19,7 +19,7 @@ struct PointPair {
 
 struct RegistrationOptions {
   double inlier_m = 0.15;  ///< Pairs farther apart after the robust start are left out.
-  double huber_m = 0.1;   ///< Scale of the Huber kernel.
+  double huber_m = 0.1;    ///< Scale of the Huber kernel.
   int min_inliers = 12;
   int hypotheses = 200;  ///< Three-point samples of the robust start.
   int max_iterations = 20;

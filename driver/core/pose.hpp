@@ -7,7 +7,8 @@
 
 namespace glint {
 
-/// A rigid motion. `T_a_b` takes the coordinates of a point in frame b to frame a: p_a = T_a_b * p_b.
+/// A rigid motion. `T_a_b` takes the coordinates of a point in frame b to frame a: p_a = T_a_b *
+/// p_b.
 struct Pose {
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
   Eigen::Vector3d translation_m = Eigen::Vector3d::Zero();

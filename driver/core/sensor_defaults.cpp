@@ -46,7 +46,9 @@ double default_beam_origin_mm(const SensorInfo& info) {
 }
 
 Eigen::Matrix4d default_lidar_to_sensor(const SensorInfo& info) {
-  const double height_mm = is_line(info, "OS-2") ? 78.296 : rebuilt_generation(info) ? 38.195 : 36.18;
+  const double height_mm = is_line(info, "OS-2")      ? 78.296
+                           : rebuilt_generation(info) ? 38.195
+                                                      : 36.18;
   Eigen::Matrix4d matrix = translation_mm(0.0, 0.0, height_mm);
   // Half a turn: the lidar frame's x points to the connector, the sensor frame's away from it.
   matrix(0, 0) = matrix(1, 1) = -1.0;

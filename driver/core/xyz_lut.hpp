@@ -23,7 +23,8 @@ class XyzLut {
                    static_cast<std::size_t>(column);
     return direction_[i] * static_cast<double>(range_mm) + offset_[i];
   }
-  /// Direction scaled to metres per millimetre of range, and offset in metres, of a staggered pixel.
+  /// Direction scaled to metres per millimetre of range, and offset in metres, of a staggered
+  /// pixel.
   [[nodiscard]] const Eigen::Vector3d& direction(int row, int column) const;
   [[nodiscard]] const Eigen::Vector3d& offset(int row, int column) const;
   [[nodiscard]] int rows() const { return rows_; }
