@@ -90,4 +90,7 @@ int run(int argc, char** argv) {
 }  // namespace
 }  // namespace glint::daemon
 
-int main(int argc, char** argv) { return glint::daemon::run(argc, argv); }
+// What escapes run() was thrown while it reported something: there is no more to tell than that.
+int main(int argc, char** argv) try { return glint::daemon::run(argc, argv); } catch (...) {
+  return glint::daemon::kFailed;
+}

@@ -49,4 +49,7 @@ int run(int argc, char** argv) {
 }  // namespace
 }  // namespace glint::cli
 
-int main(int argc, char** argv) { return glint::cli::run(argc, argv); }
+// What escapes run() was thrown while it reported something: there is no more to tell than that.
+int main(int argc, char** argv) try { return glint::cli::run(argc, argv); } catch (...) {
+  return glint::cli::kFailed;
+}
