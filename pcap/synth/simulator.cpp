@@ -173,36 +173,34 @@ void Simulator::cast_columns(int first, Casting& casting) const {
   }
 }
 
-// The parts of a beam that falls on more than one thing.
-void Simulator::cast_parts(const Scene::Moment& moment, const Ray& ray,
-                           std::span<BeamPart, SensorModel::kParts> parts) const {
-  model_.split(ray.direction, parts);
-  std::array<const Scene::Moment*, kPacketRays> moments;
-  moments.fill(&moment);
-  for (std::size_t i = 1; i < parts.size(); i += kPacketRays) {
-    const std::size_t count = std::min<std::size_t>(kPacketRays, parts.size() - i);
-    Rays rays;
-    rays.fill(ray);
-    for (std::size_t k = 0; k < count; ++k) rays[k].direction = parts[i + k].direction;
-    const Sightings sightings = world_.scene.cast(moments, rays, 0.0);
-    for (std::size_t k = 0; k < count; ++k) parts[i + k].sighting = sightings[k];
+Measurement Simulator::measure(const Column& column, const Ray& ray, const Sighting& sighting,
+                               int row, std::uint64_t pixel_key) const {
+  if (!sighting.at_edge()) {
+    const BeamPart whole{1.0, ray.direction, sighting};
+    return model_.measure({&whole, 1}, row, pixel_key);
   }
+  // The beam falls on more than one thing.
+  std::array<BeamPart, SensorModel::kParts> parts;
+  static_assert(SensorModel::kParts == kPacketRays + 1);
+  model_.split(ray.direction, parts);
+  parts[0].sighting = sighting;
+  std::array<const Scene::Moment*, kPacketRays> moments;
+  moments.fill(&column.moment);
+  Rays rays;
+  for (std::size_t i = 0; i < rays.size(); ++i) rays[i] = {ray.origin_m, parts[i + 1].direction};
+  const Sightings sightings = world_.scene.cast(moments, rays, 0.0);
+  for (std::size_t i = 0; i < rays.size(); ++i) parts[i + 1].sighting = sightings[i];
+  return model_.measure(parts, row, pixel_key);
 }
 
 void Simulator::set_pixel(const Column& column, const Ray& ray, const Sighting& sighting, int row,
                           Casting& casting) const {
   const int m = column.m;
   LidarScan& scan = casting.scan;
-  std::array<BeamPart, SensorModel::kParts> parts;
-  if (sighting.at_edge()) cast_parts(column.moment, ray, parts);
-  parts[0].direction = ray.direction;
-  parts[0].sighting = sighting;
-  const auto beam = std::span<const BeamPart>(parts).first(sighting.at_edge() ? parts.size() : 1);
-
   const std::uint64_t number = scan.sequence * static_cast<std::uint64_t>(info_.columns_per_frame) +
                                static_cast<std::uint64_t>(m);
   const Measurement measured =
-      model_.measure(beam, row, number << 8U | static_cast<std::uint64_t>(row));
+      measure(column, ray, sighting, row, number << 8U | static_cast<std::uint64_t>(row));
   const auto& [first, second] = measured.returns;
   scan.range_mm(row, m) = first.range_mm;
   scan.reflectivity(row, m) = first.reflectivity;

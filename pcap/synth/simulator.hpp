@@ -77,8 +77,8 @@ class Simulator {
 
   [[nodiscard]] Column column_at(int m, const LidarScan& scan) const;
   void cast_columns(int first, Casting& casting) const;
-  void cast_parts(const Scene::Moment& moment, const Ray& ray,
-                  std::span<BeamPart, SensorModel::kParts> parts) const;
+  [[nodiscard]] Measurement measure(const Column& column, const Ray& ray, const Sighting& sighting,
+                                    int row, std::uint64_t pixel_key) const;
   void set_pixel(const Column& column, const Ray& ray, const Sighting& sighting, int row,
                  Casting& casting) const;
 

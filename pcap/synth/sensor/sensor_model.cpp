@@ -28,11 +28,10 @@ constexpr std::array<Receiver, 3> kReceivers = {
 constexpr double kBeamWidthRad = 0.0031;
 // The beam's cross-section is a bell of this deviation.
 constexpr double kBeamSigmaRad = kBeamWidthRad / 2.355;
-// A point in the middle and six round it at two deviations integrate over a bell to the fifth
-// degree with these shares (Stroud, "Approximate calculation of multiple integrals", 1971, E2 r2
-// 5-1).
+// A point in the middle and four round it at two deviations integrate over a bell to the third
+// degree with these shares (Stroud, "Approximate calculation of multiple integrals", 1971).
 constexpr double kMiddleShare = 0.5;
-constexpr double kRingShare = 0.5 / 6.0;
+constexpr double kRingShare = 0.125;
 // Light that comes back within this distance makes one return.
 constexpr double kPulseM = 0.35;
 // Fewer photons are lost in the background.
@@ -49,7 +48,7 @@ constexpr double kLegacyReflectivity = 20.0;
 constexpr double kAirPhotons = 8.0;
 
 std::uint16_t counted(double photons) {
-  return static_cast<std::uint16_t>(std::clamp(std::round(photons), 0.0, 65535.0));
+  return static_cast<std::uint16_t>(std::clamp(photons, 0.0, 65535.0) + 0.5);
 }
 
 }  // namespace
@@ -82,8 +81,8 @@ SensorModel::SensorModel(const SensorInfo& info, const NoiseOptions& noise, std:
 }
 
 double SensorModel::range_sigma_m(double photons) const {
-  return std::hypot(noise_.range_sigma_m,
-                    noise_.one_photon_sigma_m / std::sqrt(std::max(1.0, photons)));
+  return std::sqrt(noise_.range_sigma_m * noise_.range_sigma_m +
+                   noise_.one_photon_sigma_m * noise_.one_photon_sigma_m / std::max(1.0, photons));
 }
 
 void SensorModel::split(const Eigen::Vector3d& direction, std::span<BeamPart, kParts> parts) const {
@@ -92,7 +91,7 @@ void SensorModel::split(const Eigen::Vector3d& direction, std::span<BeamPart, kP
   parts[0].direction = direction;
   parts[0].share = kMiddleShare;
   for (std::size_t i = 1; i < kParts; ++i) {
-    const double turn_rad = std::numbers::pi / 3.0 * static_cast<double>(i);
+    const double turn_rad = std::numbers::pi / 2.0 * static_cast<double>(i);
     parts[i].direction =
         (direction + beam_rad_ * (std::cos(turn_rad) * across + std::sin(turn_rad) * up))
             .normalized();
@@ -166,7 +165,7 @@ Return SensorModel::report(const Echo& echo, int row, Random& random) const {
 
   const double range_mm = 1000.0 * (echo.range_m + bias_m_[static_cast<std::size_t>(row)] +
                                     range_sigma_m(photons) * random.quick_gaussian());
-  const double steps_mm = std::round(range_mm / range_step_mm_) * range_step_mm_;
+  const double steps_mm = std::floor(range_mm / range_step_mm_ + 0.5) * range_step_mm_;
   if (steps_mm < 0.0 || steps_mm > longest_mm_) return reported;
   reported.range_mm = static_cast<std::uint32_t>(steps_mm);
   // Calibrated reflectivity is 100 for a white surface square to the beam.

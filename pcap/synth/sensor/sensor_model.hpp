@@ -45,7 +45,7 @@ struct Measurement {
 class SensorModel {
  public:
   /// Parts of a beam that falls on more than one thing.
-  static constexpr int kParts = 7;
+  static constexpr int kParts = 5;
 
   SensorModel(const SensorInfo& info, const NoiseOptions& noise, std::uint64_t seed);
 
@@ -62,15 +62,15 @@ class SensorModel {
 
  private:
   struct Echo {
-    double photons = 0.0;  ///< Expected.
-    double range_m = 0.0;  ///< Mean of what it is made of, by photons.
-    bool moving = false;
+    double photons;  ///< Expected.
+    double range_m;  ///< Mean of what it is made of, by photons.
+    bool moving;
   };
   using Echoes = std::array<Echo, kParts>;
 
   /// What a beam brings back.
   struct Light {
-    Echoes echoes;  ///< The first `count`.
+    Echoes echoes;  ///< The first `count` mean something.
     int count = 0;
     double ambient = 0.0;  ///< Near-infrared photons.
   };

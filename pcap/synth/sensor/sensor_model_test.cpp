@@ -91,7 +91,7 @@ TEST_F(SensorModelTest, SurfacesCloseTogetherMixIntoOneReturnBetweenThem) {
 }
 
 TEST_F(SensorModelTest, SurfacesFarApartAreTwoReturnsTheStrongerFirst) {
-  const auto near_first = parted(10.0, 14.0, 4);
+  const auto near_first = parted(10.0, 14.0, 3);
   const auto far_first = parted(10.0, 11.0, 0);
   for (std::uint64_t i = 0; i < 500; ++i) {
     const Measurement m = dual_model_.measure(near_first, 3, i);
