@@ -110,6 +110,7 @@ SimulationOptions parse_simulation(std::string_view text, SimulationOptions opti
                                          [&](const OptionKey& k) { return k.name == name; });
     if (key == kKeys.end() || name.size() == pair.size()) {
       std::vector<std::string_view> names;
+      names.reserve(kKeys.size());
       for (const OptionKey& k : kKeys) names.push_back(k.name);
       throw OptionError(fmt::format("'{}' is no name=value with one of the names {}", pair,
                                     fmt::join(names, ", ")));

@@ -23,8 +23,8 @@ class SimulateCommandTest : public ::testing::Test {
  protected:
   /// A short run of a small sensor; `more` is appended.
   CommandResult simulate(std::vector<std::string> more) const {
-    std::vector<std::string> arguments = {"simulate", "--seconds", "1", "--columns", "512",
-                                          "--beams", "16", "--out", out_};
+    std::vector<std::string> arguments = {"simulate", "--seconds", "1",     "--columns", "512",
+                                          "--beams",  "16",        "--out", out_};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run_glint(arguments);
   }

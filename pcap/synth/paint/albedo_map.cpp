@@ -40,7 +40,7 @@ AlbedoMap::AlbedoMap(const Canvas& canvas)
   finest.values.reserve(canvas.texels().size());
   for (const float albedo : canvas.texels()) {
     finest.values.push_back(
-        static_cast<std::uint8_t>(255.0F * std::clamp(albedo, 0.0F, 1.0F) + 0.5F));
+        static_cast<std::uint8_t>(std::lrint(255.0F * std::clamp(albedo, 0.0F, 1.0F))));
   }
   levels_.push_back(std::move(finest));
   while (levels_.size() < kMaxLevels && levels_.back().width > 1 && levels_.back().height > 1) {

@@ -139,19 +139,23 @@ double distance(const Tube& t, const Eigen::Vector3d& point_m) {
   return std::hypot((p - u_m * t.axis).norm() - t.radius_m, beyond_m);
 }
 
-Rectangle move(const Rectangle& r, const Pose& T) {
-  return {T * r.corner_m, T.rotation * r.u_axis, T.rotation * r.v_axis, r.width_m, r.height_m};
+Rectangle move(const Rectangle& r, const Pose& T_world_shape) {
+  return {T_world_shape * r.corner_m, T_world_shape.rotation * r.u_axis,
+          T_world_shape.rotation * r.v_axis, r.width_m, r.height_m};
 }
 
 // The place on the albedo map stays that of the unmoved point, up to a constant.
-Triangle move(const Triangle& t, const Pose& T) {
-  return {T * t.a_m, T * t.b_m, T * t.c_m, T.rotation * t.u_axis, T.rotation * t.v_axis};
+Triangle move(const Triangle& t, const Pose& T_world_shape) {
+  return {T_world_shape * t.a_m, T_world_shape * t.b_m, T_world_shape * t.c_m,
+          T_world_shape.rotation * t.u_axis, T_world_shape.rotation * t.v_axis};
 }
 
-Cylinder move(const Cylinder& c, const Pose& T) { return {T * c.base_m, c.radius_m, c.height_m}; }
+Cylinder move(const Cylinder& c, const Pose& T_world_shape) {
+  return {T_world_shape * c.base_m, c.radius_m, c.height_m};
+}
 
-Tube move(const Tube& t, const Pose& T) {
-  return {T * t.start_m, T.rotation * t.axis, t.radius_m, t.length_m};
+Tube move(const Tube& t, const Pose& T_world_shape) {
+  return {T_world_shape * t.start_m, T_world_shape.rotation * t.axis, t.radius_m, t.length_m};
 }
 
 Eigen::AlignedBox3d box_of(const Rectangle& r) {
@@ -184,23 +188,26 @@ int pieces(double length_m) { return std::max(1, static_cast<int>(std::ceil(leng
 std::vector<Shape> parts_of(const Shape& shape) { return {shape}; }
 
 std::vector<Shape> parts_of(const Rectangle& r) {
-  std::vector<Shape> parts;
   const int columns = pieces(r.width_m);
   const int rows = pieces(r.height_m);
+  std::vector<Shape> parts;
+  parts.reserve(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
   const double width_m = r.width_m / columns;
   const double height_m = r.height_m / rows;
-  for (int i = 0; i < columns * rows; ++i) {
-    const double u_m = width_m * (i % columns);
-    const double v_m = height_m * (i / columns);
-    parts.emplace_back(Rectangle{r.corner_m + u_m * r.u_axis + v_m * r.v_axis, r.u_axis, r.v_axis,
-                                 width_m, height_m});
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      const Eigen::Vector3d corner_m =
+          r.corner_m + column * width_m * r.u_axis + row * height_m * r.v_axis;
+      parts.emplace_back(Rectangle{corner_m, r.u_axis, r.v_axis, width_m, height_m});
+    }
   }
   return parts;
 }
 
 std::vector<Shape> parts_of(const Tube& t) {
-  std::vector<Shape> parts;
   const int count = pieces(t.length_m);
+  std::vector<Shape> parts;
+  parts.reserve(static_cast<std::size_t>(count));
   const double length_m = t.length_m / count;
   for (int i = 0; i < count; ++i) {
     parts.emplace_back(Tube{t.start_m + i * length_m * t.axis, t.axis, t.radius_m, length_m});

@@ -48,7 +48,7 @@ constexpr double kLegacyReflectivity = 20.0;
 constexpr double kAirPhotons = 8.0;
 
 std::uint16_t counted(double photons) {
-  return static_cast<std::uint16_t>(std::clamp(photons, 0.0, 65535.0) + 0.5);
+  return static_cast<std::uint16_t>(std::lrint(std::clamp(photons, 0.0, 65535.0)));
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ Drive try_drive(const Grid& grid, Random& random) {
   while (drive.length_m < kMostWayM) {
     drive.crossings.push_back(at);
     drive.directions.push_back(direction);
-    const Eigen::Vector2i ahead = kDirections[static_cast<std::size_t>(direction)];
+    const Eigen::Vector2i& ahead = kDirections[static_cast<std::size_t>(direction)];
     at += ahead;
     drive.length_m += grid.street_m(ahead);
     const bool homewards = drive.length_m > kLeastWayM - 300.0;

@@ -107,6 +107,7 @@ void add_stairwell(WorldBuilder& builder, const Plan& plan, const Flights& fligh
   Random& random = builder.random();
   Surfaces& surfaces = builder.surfaces();
   const Look wall{builder.material(Material::kPlaster), kLampShade};
+  const FaceLook wall_face = [&](double, double) { return Look(wall); };
   const Look step{builder.material(Material::kConcrete), kLampShade};
   const Look rail{builder.material(Material::kMetal), kLampShade};
   const double top_m = plan.storey_m() + plan.room_m();
@@ -115,7 +116,7 @@ void add_stairwell(WorldBuilder& builder, const Plan& plan, const Flights& fligh
              {-plan.stairwell_m(), 0, 0},
              {-plan.stairwell_m(), plan.width_m, 0},
              {0, plan.width_m, 0}},
-            top_m, [&](double, double) { return wall; });
+            top_m, wall_face);
   add(surfaces, level({-plan.stairwell_m(), 0, 0}, plan.stairwell_m(), plan.width_m), step);
   add(surfaces, overhead({-plan.stairwell_m(), 0, top_m}, plan.stairwell_m(), plan.width_m), wall);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright 2026 The Glint Authors
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -85,9 +86,9 @@ Route make_walk(const Waves& land, Random& random) {
     double depth;
     double phase_rad;
   };
-  std::vector<Lobe> lobes;
-  for (int i = 0; i < 4; ++i) {
-    lobes.push_back({random.uniform(0.02, 0.07), random.uniform(0.0, 2.0 * std::numbers::pi)});
+  std::array<Lobe, 4> lobes{};
+  for (Lobe& lobe : lobes) {
+    lobe = {random.uniform(0.02, 0.07), random.uniform(0.0, 2.0 * std::numbers::pi)};
   }
   Route route;
   route.closed = true;

@@ -127,7 +127,7 @@ World make_street(WorldBuilder& builder) {
   // Anticlockwise, in the right-hand lane; half-way points to begin in a street.
   route.points_m = {{0, -lane_y, 0}, {lane_x, -lane_y, 0}, {lane_x, 0, 0},  {lane_x, lane_y, 0},
                     {0, lane_y, 0},  {-lane_x, lane_y, 0}, {-lane_x, 0, 0}, {-lane_x, -lane_y, 0}};
-  std::rotate(route.points_m.begin(), route.points_m.begin() + 2 * random.below(4),
+  std::rotate(route.points_m.begin(), route.points_m.begin() + std::ptrdiff_t{2} * random.below(4),
               route.points_m.end());
   return builder.finish(std::move(route), "wheeled");
 }

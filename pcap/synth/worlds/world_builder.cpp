@@ -83,7 +83,7 @@ void WorldBuilder::hang_pictures(const Rectangle& wall, double from_m, double to
 }
 
 World WorldBuilder::finish(Route route, std::string motion) {
-  return {Scene(std::move(surfaces_), std::move(placements_), std::move(movers_)), std::move(route),
+  return {Scene(std::move(surfaces_), placements_, std::move(movers_)), std::move(route),
           std::move(motion)};
 }
 

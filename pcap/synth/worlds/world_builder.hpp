@@ -52,7 +52,7 @@ class WorldBuilder {
   void hang_pictures(const Rectangle& wall, double from_m, double to_m, double apart_m,
                      double light);
 
-  /// The world; the builder is empty afterwards.
+  /// The world; the builder is used up.
   World finish(Route route, std::string motion);
 
  private:
