@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 
 #include "pcap/synth/option_error.hpp"
 
@@ -21,7 +22,9 @@ Number number(std::string_view name, const std::string& text) {
   Number value{};
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error == std::errc() && stop == end) return value;
+  if (error == std::errc() && stop == end && std::isfinite(static_cast<double>(value))) {
+    return value;
+  }
   throw OptionError(fmt::format("{} = \"{}\" is no {}", name, text,
                                 std::is_integral_v<Number> ? "whole number in range" : "number"));
 }

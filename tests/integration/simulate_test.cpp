@@ -28,9 +28,6 @@ class SimulateCommandTest : public ::testing::Test {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run_glint(arguments);
   }
-  nlohmann::json info() const {
-    return nlohmann::json::parse(run_glint({"info", out_ / "capture.pcap"}).out);
-  }
   void expect_usage(const CommandResult& result, const std::string& named) const {
     EXPECT_EQ(result.exit_code, 2) << result.out;
     EXPECT_THAT(result.out, HasSubstr(named));
@@ -99,6 +96,8 @@ TEST_F(SimulateCommandTest, WrongOptionsAreNamedWithWhatIsPossible) {
   expect_usage(simulate({"--world", "room", "--profile", "RNG99"}), "RNG15_RFL8_NIR8");
   expect_usage(simulate({"--world", "room", "--loss", "1.5"}), "loss");
   expect_usage(simulate({"--world", "room", "--seed", "one"}), "--seed = \"one\"");
+  expect_usage(simulate({"--world", "room", "--restart-gap", "nan"}), "--restart-gap = \"nan\"");
+  expect_usage(simulate({"--world", "room", "--range-noise", "-1"}), "range noise");
   expect_usage(simulate({"--world", "room", "--rate", "15"}), "choose one of 10, 20");
   expect_usage(simulate({"--world", "room", "--to", "127.0.0.1:7502"}), "either --out");
 }

@@ -2,6 +2,8 @@
 // Copyright 2026 The Glint Authors
 #include "pcap/synth/sensor/sensor_model.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -9,6 +11,7 @@
 #include <string_view>
 
 #include "driver/core/packet_format.hpp"
+#include "pcap/synth/option_error.hpp"
 #include "pcap/synth/random.hpp"
 
 namespace glint::synth {
@@ -64,6 +67,10 @@ SensorModel::SensorModel(const SensorInfo& info, const NoiseOptions& noise, std:
       beam_rad_(noise.mixed_pixels ? 2.0 * kBeamSigmaRad : 0.0),
       photons_(kReceivers[1].photons),
       near_range_m_(kReceivers[1].near_range_m) {
+  if (!(noise.range_sigma_m >= 0.0 && noise.range_sigma_m <= 1.0)) {
+    throw OptionError(
+        fmt::format("a range noise of {} m is not possible: choose 0 to 1", noise.range_sigma_m));
+  }
   for (const Receiver& receiver : kReceivers) {
     if (!info.product_line.starts_with(receiver.product_line)) continue;
     photons_ = receiver.photons;

@@ -47,6 +47,7 @@ class SensorModel {
   /// Parts of a beam that falls on more than one thing.
   static constexpr int kParts = 5;
 
+  /// @throws OptionError for a range noise that no sensor has.
   SensorModel(const SensorInfo& info, const NoiseOptions& noise, std::uint64_t seed);
 
   /// How far a beam reaches to the side of its middle, rad; 0 when mixed pixels are off.

@@ -44,10 +44,6 @@ double Timing::column_s(std::int64_t column) const {
   return period_s_ * turned;
 }
 
-double Timing::clock_rate_error(double true_s) const {
-  return 1e-6 * (offset_ppm_ + warm_up_ppm_ * (1.0 - std::exp(-std::max(0.0, true_s) / kWarmUpS)));
-}
-
 SensorTime Timing::clock_at(double true_s) const {
   // The integral of the rate error.
   const double warm_s =

@@ -21,8 +21,6 @@ class Timing {
   /// What the sensor's clock shows at a true time, and the true time at which it shows that.
   [[nodiscard]] SensorTime clock_at(double true_s) const;
   [[nodiscard]] double true_s(SensorTime time) const;
-  /// Parts by which the clock runs too fast at a true time, rate error 1e-6 = 1 ppm.
-  [[nodiscard]] double clock_rate_error(double true_s) const;
 
  private:
   const double period_s_;
