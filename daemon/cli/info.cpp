@@ -69,7 +69,7 @@ class ReorderCounter : public PacketSource {
 
  private:
   void look_at(const PacketView& view) {
-    const std::uint16_t frame = view.frame_id();
+    const std::uint32_t frame = view.frame_id();
     const std::uint16_t column = view.column(0).measurement_id();
     // Frame ids wrap: half their range is "before".
     const auto frames_on = static_cast<std::int16_t>(frame - frame_);

@@ -21,7 +21,9 @@ PacketFormat::PacketFormat(const SensorInfo& info)
     : layout(&profile_layout(info.profile)),
       columns_per_frame(info.columns_per_frame),
       columns_per_packet(info.columns_per_packet),
-      pixels_per_column(info.pixels_per_column) {
+      pixels_per_column(info.pixels_per_column),
+      header(info.profile == LidarProfile::kFusaRng15Rfl8Nir8Dual ? PacketHeader::kFusa
+                                                                  : info.header) {
   const auto bytes = [](int count) { return static_cast<std::size_t>(count); };
   column_bytes = bytes(layout->column_header_bytes) +
                  bytes(pixels_per_column) * bytes(layout->pixel_bytes) +

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#include "driver/core/crc64.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string_view>
+
+namespace glint {
+namespace {
+
+std::uint64_t crc_of(std::string_view text) { return crc64(std::as_bytes(std::span(text))); }
+
+TEST(Crc64, GivesTheCheckValueOfItsCatalogueEntry) {
+  EXPECT_EQ(crc_of("123456789"), 0x995D'C9BB'DF19'39FAU);
+  EXPECT_EQ(crc_of(""), 0U);
+}
+
+TEST(Crc64, TellsASingleBitApart) { EXPECT_NE(crc_of("123456789"), crc_of("123456788")); }
+
+}  // namespace
+}  // namespace glint
