@@ -68,9 +68,12 @@ int run(int argc, char** argv) {
   app.add_flag("--print-config", options.print_config,
                "Print every key with its value, unit and range, and exit");
   app.add_option("--set", options.settings, "Set one value: key=value; may be given again");
-  app.add_option("--source", options.input.source, "udp or pcap:FILE")->capture_default_str();
+  app.add_option("--source", options.input.source,
+                 "udp, pcap:FILE or synth:WORLD[,name=value...] (options of glint simulate)")
+      ->capture_default_str();
   app.add_option("--meta", options.input.metadata, "Sensor metadata (JSON)");
-  app.add_option("--rate", options.input.rate, "Of a capture: max or a multiple of its speed")
+  app.add_option("--rate", options.input.rate,
+                 "Of a capture or simulation: max or a multiple of its speed")
       ->capture_default_str();
   try {
     app.parse(argc, argv);

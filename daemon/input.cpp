@@ -8,16 +8,24 @@
 
 #include <ctime>
 
+#include "daemon/parallel_for.hpp"
 #include "daemon/replay_pacer.hpp"
 #include "daemon/server.hpp"
 #include "driver/udp_source.hpp"
 #include "pcap/pcap_source.hpp"
+#include "pcap/synth/option_keys.hpp"
+#include "pcap/synth/synthetic_source.hpp"
 
 namespace glint::daemon {
 namespace {
 
 namespace fs = std::filesystem;
 constexpr std::string_view kPcapPrefix = "pcap:";
+constexpr std::string_view kSynthPrefix = "synth:";
+// A simulated sensor runs until it is told otherwise.
+constexpr double kForeverS = 1e8;
+// It shares the machine with what it is to try out.
+constexpr int kSynthThreads = 2;
 
 /// --meta, else the configured file, else for a capture STEM.json or metadata.json beside it.
 fs::path metadata_file(const InputOptions& options, const Config& config, const fs::path& capture) {
@@ -95,6 +103,30 @@ Input open_capture_input(const fs::path& file, const InputOptions& options, cons
   }
 }
 
+Input open_synthetic_input(std::string_view what, const InputOptions& options) {
+  try {
+    synth::SimulationOptions standard;
+    standard.seconds = kForeverS;
+    synth::SimulationOptions simulation = synth::parse_simulation(what, standard);
+    simulation.parallel_for = parallel_for(kSynthThreads);
+    synth::SyntheticSource::Pacer wait;
+    if (const auto rate = parse_rate(options.rate)) {
+      wait = [pacer = std::make_shared<ReplayPacer>(*rate)](HostTime time) {
+        return pacer->wait(time);
+      };
+    }
+    auto source = std::make_unique<synth::SyntheticSource>(simulation, wait);
+    Input input;
+    input.info = source->simulator().info();
+    input.options.lossless = true;
+    input.options.source_name = fmt::format("synth:{}", what);
+    input.source = std::move(source);
+    return input;
+  } catch (const InputError& error) {
+    throw ConfigError(fmt::format("--source synth:{}: {}", what, error.what()));
+  }
+}
+
 Input open_live_input(const InputOptions& options, const Config& config) {
   Input input;
   const fs::path metadata = metadata_file(options, config, {});
@@ -112,13 +144,18 @@ Input open_live_input(const InputOptions& options, const Config& config) {
 }  // namespace
 
 Input open_input(const InputOptions& options, const Config& config) {
-  const bool capture = options.source.starts_with(kPcapPrefix);
-  if (!capture && options.source != "udp") {
-    throw ConfigError(fmt::format("--source {} is neither udp nor pcap:FILE", options.source));
+  const std::string_view source = options.source;
+  Input input;
+  if (source.starts_with(kPcapPrefix)) {
+    input = open_capture_input(source.substr(kPcapPrefix.size()), options, config);
+  } else if (source.starts_with(kSynthPrefix)) {
+    input = open_synthetic_input(source.substr(kSynthPrefix.size()), options);
+  } else if (source == "udp") {
+    input = open_live_input(options, config);
+  } else {
+    throw ConfigError(
+        fmt::format("--source {} is none of udp, pcap:FILE and synth:WORLD", options.source));
   }
-  Input input = capture
-                    ? open_capture_input(options.source.substr(kPcapPrefix.size()), options, config)
-                    : open_live_input(options, config);
   log_sentences(input.info.warnings);
   return input;
 }

@@ -15,7 +15,7 @@ namespace glint::daemon {
 
 /// The command line's part of where packets come from.
 struct InputOptions {
-  std::string source = "udp";  ///< "udp" or "pcap:FILE".
+  std::string source = "udp";  ///< "udp", "pcap:FILE" or "synth:WORLD[,name=value...]".
   std::string metadata;        ///< Goes before sensor.metadata_file.
   std::string rate = "1";      ///< Of a capture: "max" or a multiple of the recorded speed.
 };

@@ -58,7 +58,7 @@ void OdometryThread::take_packet(const ReceivedPacket& received) {
   }
   last_host_time_ = received.packet.host_time;
   last_arrival_ns_ = received.arrival_ns;
-  if (received.packet.bytes.size() == kLegacyImuPacketBytes) {
+  if (received.packet.bytes.size() == assembler_.format().imu_packet_bytes) {
     ++state_.imu_packets;
     return;
   }

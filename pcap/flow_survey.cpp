@@ -103,11 +103,12 @@ void keep_serial(std::vector<Flow>& flows, std::uint64_t serial,
 }
 
 /// IMU packets carry no serial: they are those of the lidar's source address.
-void find_imu_port(const FlowSurvey& survey, const SensorInfo& info, SensorFlow& found) {
+void find_imu_port(const FlowSurvey& survey, const SensorInfo& info, const PacketFormat& format,
+                   SensorFlow& found) {
   found.imu_port = static_cast<std::uint16_t>(info.imu_port);
   const Flow* elsewhere = nullptr;
   for (const Flow& flow : survey.flows) {
-    if (flow.bytes != kLegacyImuPacketBytes || flow.source != found.source) continue;
+    if (flow.bytes != format.imu_packet_bytes || flow.source != found.source) continue;
     if (flow.port == info.imu_port) return;
     if (elsewhere == nullptr) elsewhere = &flow;
   }
@@ -176,7 +177,7 @@ SensorFlow find_sensor_flow(const FlowSurvey& survey, const std::filesystem::pat
                     to_string(best.source), to_string(flow.source), best.bytes, best.port,
                     to_string(best.source)));
   }
-  find_imu_port(survey, info, found);
+  find_imu_port(survey, info, format, found);
   return found;
 }
 

@@ -62,7 +62,7 @@ bool PcapSource::accept(const Datagram& datagram) {
     return false;
   }
   const bool is_lidar = on_lidar_port && datagram.payload.size() == format_.packet_bytes;
-  const bool is_imu = datagram.payload.size() == kLegacyImuPacketBytes;
+  const bool is_imu = datagram.payload.size() == format_.imu_packet_bytes;
   if (datagram.source.address != flow_.source ||
       (is_lidar && is_other_serial(format_, flow_.serial, datagram.payload))) {
     ++counters_.other_sensors;

@@ -174,8 +174,8 @@ TEST_F(FrontendTest, KeyframePointsLieOnTheWorld) {
     const Pose pose = simulator_->true_pose(keyframe->estimate.stamp);
     for (std::size_t k = 0; k < keyframe->points.size(); k += 50) {
       const MapPoint& p = keyframe->points[k];
-      sum_m +=
-          simulator_->scene().distance_to_surface_m(pose * Eigen::Vector3d(p.x_m, p.y_m, p.z_m));
+      sum_m += simulator_->scene().at(0.0).distance_to_surface_m(
+          pose * Eigen::Vector3d(p.x_m, p.y_m, p.z_m));
       ++count;
     }
   }

@@ -33,12 +33,13 @@ struct Sent {
 };
 
 /// Sends the capture once.
-void send_capture(PcapSource& source, const UdpSender& lidar, const UdpSender& imu, Sent& sent) {
+void send_capture(PcapSource& source, std::size_t imu_bytes, const UdpSender& lidar,
+                  const UdpSender& imu, Sent& sent) {
   RawPacket packet;
   SourceStatus status = source.read(packet);
   for (; status != SourceStatus::kEnd; status = source.read(packet)) {
     if (status == SourceStatus::kIdle) continue;
-    const bool is_imu = packet.bytes.size() == kLegacyImuPacketBytes;
+    const bool is_imu = packet.bytes.size() == imu_bytes;
     (is_imu ? imu : lidar).send(packet.bytes);
     ++(is_imu ? sent.imu : sent.lidar);
   }
@@ -68,7 +69,7 @@ void emulate(const EmulateOptions& options) {
   for (int loop = 0; loop < options.loops; ++loop) {
     PcapSource source(options.input.capture, info, source_options);
     pacer.restart();
-    send_capture(source, lidar, imu, sent);
+    send_capture(source, PacketFormat(info).imu_packet_bytes, lidar, imu, sent);
     if (loop == 0) print_notices(source.notices());
   }
   const double seconds = static_cast<double>(daemon::steady_now_ns() - start_ns) * kSecondsPerNs;

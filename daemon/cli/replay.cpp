@@ -75,6 +75,9 @@ struct Totals {
   double completeness_mean = 0.0;
   std::size_t poses = 0;
   double path_m = 0.0;
+  double keypoints_mean = 0.0;
+  double matches_mean = 0.0;
+  double inliers_mean = 0.0;
 };
 
 Totals totals_of(const ReplayResult& result, const SensorInfo& info) {
@@ -82,8 +85,11 @@ Totals totals_of(const ReplayResult& result, const SensorInfo& info) {
   const double period_s = static_cast<double>(info.scan_period_ns()) * kSecondsPerNs;
   const slam::OdometryEstimate* last = nullptr;
   for (const slam::OdometryEstimate& estimate : result.estimates) {
-    totals.completeness_mean +=
-        estimate.completeness / static_cast<double>(result.estimates.size());
+    const auto scans = static_cast<double>(result.estimates.size());
+    totals.completeness_mean += estimate.completeness / scans;
+    totals.keypoints_mean += estimate.keypoints / scans;
+    totals.matches_mean += estimate.matches / scans;
+    totals.inliers_mean += estimate.inliers / scans;
     if (estimate.state == slam::TrackingState::kLost) totals.lost_s += period_s;
     if (!has_pose(estimate)) continue;
     if (last != nullptr && last->segment == estimate.segment) {
@@ -128,12 +134,16 @@ nlohmann::ordered_json summary_of(const ReplayResult& result, const SensorInfo& 
       {"interrupted", result.interrupted},
       {"peak_rss_mb", peak_rss_mb()}};
   summary["packets"] = {{"accepted", packets.packets},
+                        {"imu", result.imu_packets},
                         {"missing", packets.missing_packets},
                         {"late", packets.late_packets},
                         {"duplicate", packets.duplicate_packets},
                         {"bad", packets.bad_size + packets.bad_type + packets.bad_serial},
                         {"bad_columns", packets.bad_column},
                         {"sensor_restarts", packets.restarts}};
+  summary["tracking"] = {{"keypoints_mean", totals.keypoints_mean},
+                         {"matches_mean", totals.matches_mean},
+                         {"inliers_mean", totals.inliers_mean}};
   summary["stage_ms"] = result.stages.to_json(false);
   summary["stage_cpu_ms"] = result.stages.to_json(true);
   summary["config"] = daemon::to_json(config);

@@ -49,7 +49,11 @@ class Replay {
  private:
   void decode(const RawPacket& packet) {
     const slam::StageTimer timer(clock_, decode_times_, slam::Stage::kDecode);
-    // IMU packets and strangers are counted by the assembler and the source.
+    if (packet.bytes.size() == assembler_.format().imu_packet_bytes) {
+      ++result_.imu_packets;
+      return;
+    }
+    // Strangers are counted by the assembler and the source.
     static_cast<void>(assembler_.push(packet.bytes));
   }
 

@@ -12,7 +12,7 @@ const LidarScan* ScanReader::next() {
     if (status == SourceStatus::kIdle) continue;
     if (status == SourceStatus::kPacket) {
       // IMU packets are known by their size; the assembler would count them as bad.
-      if (packet_.bytes.size() == kLegacyImuPacketBytes) continue;
+      if (packet_.bytes.size() == assembler_.format().imu_packet_bytes) continue;
       static_cast<void>(assembler_.push(packet_.bytes));  // Counted inside.
     } else {
       assembler_.flush();

@@ -2,41 +2,79 @@
 // Copyright 2026 The Glint Authors
 #include "driver/core/imu_packet.hpp"
 
-#include <cmath>
+#include <algorithm>
 #include <cstdint>
 
 #include "driver/core/bytes.hpp"
+#include "driver/core/crc64.hpp"
+#include "driver/core/imu_packet_layout.hpp"
 #include "driver/core/packet_format.hpp"
+#include "driver/core/profile_table.hpp"
 
 namespace glint {
 namespace {
 
-constexpr double kStandardGravity_mps2 = 9.80665;
-constexpr double kRadiansPerDegree = M_PI / 180.0;
-
-// The packet begins with a monotonic time for diagnostics, which nothing here needs.
-constexpr int kAccelTimeOffset = 8;
-constexpr int kGyroTimeOffset = 16;
-constexpr int kAccelerationOffset = 24;
-constexpr int kAngularRateOffset = 36;
+// At most 2^62 ns (146 years), so that differences and small steps from it cannot overflow.
+SensorTime load_time(const std::byte* from) {
+  constexpr std::uint64_t kLatest_ns = 1ULL << 62U;
+  return {static_cast<std::int64_t>(std::min(load<std::uint64_t>(from), kLatest_ns))};
+}
 
 Eigen::Vector3d load_vector(const std::byte* from) {
   return {load<float>(from), load<float>(from + 4), load<float>(from + 8)};
 }
 
+bool finite(const ImuSample& sample) {
+  return sample.acceleration_mps2.allFinite() && sample.angular_rate_radps.allFinite();
+}
+
+bool crc_matches(std::span<const std::byte> packet) {
+  const auto covered = packet.first(packet.size() - kImuCrcBytes);
+  return load<std::uint64_t>(covered.data() + covered.size()) == crc64(covered);
+}
+
+bool parse_nmea_packet(const ImuPacketFormat& format, std::span<const std::byte> bytes,
+                       std::vector<ImuSample>& samples, CrcCheck crc) {
+  if (bytes.size() != format.packet_bytes) return false;
+  if (load<std::uint16_t>(bytes.data() + kPacketTypeOffset) != kImuPacketType) return false;
+  if (crc == CrcCheck::kRequired && !crc_matches(bytes)) return false;
+  const std::byte* from = bytes.data() + kImuHeaderBytes + kImuNmeaBytes;
+  for (int i = 0; i < format.measurements; ++i, from += kImuMeasurementBytes) {
+    if ((load<std::uint16_t>(from + kImuStatusOffset) & 1U) == 0) continue;
+    const SensorTime time = load_time(from + kImuTimeOffset);
+    const ImuSample sample{time, time, load_vector(from + kImuAccelerationOffset),
+                           load_vector(from + kImuAngularRateOffset)};
+    if (finite(sample)) samples.push_back(sample);
+  }
+  return true;
+}
+
 }  // namespace
+
+ImuPacketFormat::ImuPacketFormat(const SensorInfo& info)
+    : profile(info.imu_profile), measurements(1), packet_bytes(kLegacyImuPacketBytes) {
+  if (profile == ImuProfile::kLegacy) return;
+  measurements = info.imu_measurements_per_packet;
+  packet_bytes = kImuHeaderBytes + kImuNmeaBytes +
+                 static_cast<std::size_t>(measurements) * kImuMeasurementBytes + kImuFooterBytes;
+}
+
+bool parse_imu_packet(const ImuPacketFormat& format, std::span<const std::byte> bytes,
+                      std::vector<ImuSample>& samples, CrcCheck crc) {
+  if (format.profile != ImuProfile::kLegacy) return parse_nmea_packet(format, bytes, samples, crc);
+  const auto sample = parse_legacy_imu(bytes);
+  if (sample) samples.push_back(*sample);
+  return sample.has_value();
+}
 
 std::optional<ImuSample> parse_legacy_imu(std::span<const std::byte> bytes) {
   if (bytes.size() != kLegacyImuPacketBytes) return std::nullopt;
   const std::byte* packet = bytes.data();
-  ImuSample sample;
-  sample.accel_time = {load<std::int64_t>(packet + kAccelTimeOffset)};
-  sample.gyro_time = {load<std::int64_t>(packet + kGyroTimeOffset)};
-  sample.acceleration_mps2 = kStandardGravity_mps2 * load_vector(packet + kAccelerationOffset);
-  sample.angular_rate_radps = kRadiansPerDegree * load_vector(packet + kAngularRateOffset);
-  if (!sample.acceleration_mps2.allFinite() || !sample.angular_rate_radps.allFinite()) {
-    return std::nullopt;
-  }
+  const ImuSample sample{load_time(packet + kLegacyImuAccelTimeOffset),
+                         load_time(packet + kLegacyImuGyroTimeOffset),
+                         kStandardGravity_mps2 * load_vector(packet + kLegacyImuAccelerationOffset),
+                         kRadiansPerDegree * load_vector(packet + kLegacyImuAngularRateOffset)};
+  if (!finite(sample)) return std::nullopt;
   return sample;
 }
 

@@ -29,7 +29,7 @@ std::string to_metadata_json(const SensorInfo& info) {
   config["udp_port_imu"] = info.imu_port;
   json["lidar_data_format"] = {
       {"udp_profile_lidar", to_string(info.profile)},
-      {"udp_profile_imu", "LEGACY"},
+      {"udp_profile_imu", to_string(info.imu_profile)},
       {"columns_per_frame", info.columns_per_frame},
       {"columns_per_packet", info.columns_per_packet},
       {"pixels_per_column", info.pixels_per_column},
@@ -37,6 +37,10 @@ std::string to_metadata_json(const SensorInfo& info) {
       {"fps", info.scan_rate_hz},
       {"column_window", {info.column_window.first, info.column_window.second}},
       {"pixel_shift_by_row", info.pixel_shift_by_row}};
+  if (info.imu_profile != ImuProfile::kLegacy) {
+    json["imu_data_format"] = {{"imu_measurements_per_packet", info.imu_measurements_per_packet},
+                               {"imu_packets_per_frame", info.imu_packets_per_frame}};
+  }
   json["beam_intrinsics"] = {{"beam_altitude_angles", info.beam_altitude_deg},
                              {"beam_azimuth_angles", info.beam_azimuth_deg},
                              {"beam_to_lidar_transform", row_major(info.beam_to_lidar)}};

@@ -41,7 +41,7 @@ struct ProfileLayout {
 /// The table's row for a profile. Never fails: every LidarProfile has a row.
 const ProfileLayout& profile_layout(LidarProfile profile);
 
-/// The byte layout of one sensor's lidar packets: a profile's row and the sensor's dimensions.
+/// The byte layout of one sensor's packets: a profile's row and the sensor's dimensions.
 struct PacketFormat {
   /// @throws MetadataError if the packet would pass the UDP limit of 65,507 bytes.
   explicit PacketFormat(const SensorInfo& info);
@@ -53,6 +53,8 @@ struct PacketFormat {
   PacketHeader header;
   std::size_t column_bytes;
   std::size_t packet_bytes;
+  /// Of the sensor's IMU packets, which older firmware marks by nothing but their size.
+  std::size_t imu_packet_bytes;
 
   [[nodiscard]] bool legacy() const { return layout->profile == LidarProfile::kLegacy; }
   /// Width of the frame id on the wire.
@@ -60,7 +62,7 @@ struct PacketFormat {
   [[nodiscard]] bool has(Channel c) const { return layout->field(c).present(); }
 };
 
-/// Size of a legacy IMU packet; it has no header, id or serial and is known by this size alone.
+/// Size of a legacy IMU packet; it has no header, id or serial.
 constexpr std::size_t kLegacyImuPacketBytes = 48;
 
 }  // namespace glint

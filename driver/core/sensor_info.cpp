@@ -39,9 +39,16 @@ constexpr std::array<ProfileName, 13> kProfileNames{{
     {LidarProfile::kRng19Rfl8Sig16Nir16Rgb16Dual, "RNG19_RFL8_SIG16_NIR16_RGB16_DUAL"},
 }};
 
+constexpr std::array kImuProfileNames{
+    std::pair{ImuProfile::kLegacy, std::string_view("LEGACY")},
+    std::pair{ImuProfile::kAccel32Gyro32Nmea, std::string_view("ACCEL32_GYRO32_NMEA")},
+};
+
 // Far above any sensor; keeps sizes computed from metadata small enough to allocate.
 constexpr int kMaxColumnsPerFrame = 8192;
 constexpr int kMaxPixelsPerColumn = 256;
+constexpr int kMaxImuMeasurementsPerPacket = 1024;
+constexpr int kMaxImuPacketsPerFrame = 64;
 constexpr int kMaxInitId = 0xFF'FFFF;  // 24 bits on the wire
 constexpr double kMaxTranslation_mm = 10'000.0;
 constexpr double kDefaultScanRate_hz = 10.0;
@@ -50,7 +57,7 @@ constexpr int kDefaultColumnsPerPacket = 16;
 // The two forms of metadata, seen alike: in the flat one all groups but the data format are the
 // whole document.
 struct Groups {
-  MetadataGroup sensor, beams, lidar, imu, format, config;
+  MetadataGroup sensor, beams, lidar, imu, format, imu_format, config;
 };
 
 Groups find_groups(const MetadataGroup& root) {
@@ -62,7 +69,7 @@ Groups find_groups(const MetadataGroup& root) {
   const auto* group = std::find_if(kGroupNames.begin(), kGroupNames.end(),
                                    [&](const char* key) { return !root.group(key).absent(); });
   if (group == kGroupNames.end()) {
-    return {root, root, root, root, root.group("data_format"), root};
+    return {root, root, root, root, root.group("data_format"), root.group("imu_data_format"), root};
   }
   for (const char* key : kFlatKeys) {
     if (!root.has(key)) continue;
@@ -72,7 +79,8 @@ Groups find_groups(const MetadataGroup& root) {
   }
   Groups groups{root.group("sensor_info"),       root.group("beam_intrinsics"),
                 root.group("lidar_intrinsics"),  root.group("imu_intrinsics"),
-                root.group("lidar_data_format"), root.group("config_params")};
+                root.group("lidar_data_format"), root.group("imu_data_format"),
+                root.group("config_params")};
   if (groups.sensor.absent()) {
     root.fail("sensor_info", "is missing, so the sensor is unknown; get the metadata again");
   }
@@ -161,12 +169,29 @@ void read_profile(const MetadataGroup& format, SensorInfo& info) {
   }
   info.profile = known->profile;
   info.header = read_header(format, info.profile);
-  const std::string imu = format.text("udp_profile_imu").value_or("LEGACY");
-  if (imu != "LEGACY") {
-    info.warnings.push_back(fmt::format(
-        "IMU packets of profile {} are not read; set udp_profile_imu to LEGACY to use the IMU",
-        imu));
+}
+
+// The IMU is no reason to refuse a sensor, so an unknown profile only warns.
+void read_imu_format(const Groups& groups, SensorInfo& info) {
+  const auto said = groups.format.text("udp_profile_imu");
+  const std::string name = said ? *said : groups.config.text("udp_profile_imu").value_or("LEGACY");
+  const auto* known = std::find_if(kImuProfileNames.begin(), kImuProfileNames.end(),
+                                   [&](const auto& entry) { return entry.second == name; });
+  if (known == kImuProfileNames.end()) {
+    info.warnings.push_back(
+        fmt::format("IMU packets of profile {} are not read; set udp_profile_imu to LEGACY or "
+                    "ACCEL32_GYRO32_NMEA to use the IMU",
+                    name));
+    return;
   }
+  info.imu_profile = known->first;
+  const MetadataGroup& imu = groups.imu_format;
+  if (info.imu_profile == ImuProfile::kLegacy) return;
+  info.imu_measurements_per_packet =
+      imu.integer("imu_measurements_per_packet", 1, kMaxImuMeasurementsPerPacket)
+          .value_or(info.imu_measurements_per_packet);
+  info.imu_packets_per_frame = imu.integer("imu_packets_per_frame", 1, kMaxImuPacketsPerFrame)
+                                   .value_or(info.imu_packets_per_frame);
 }
 
 // Number of columns and rate: from the data format, else from the lidar mode.
@@ -295,6 +320,10 @@ std::string_view to_string(LidarProfile profile) {
   return kProfileNames[static_cast<std::size_t>(profile)].name;
 }
 
+std::string_view to_string(ImuProfile profile) {
+  return kImuProfileNames[static_cast<std::size_t>(profile)].second;
+}
+
 SensorInfo parse_sensor_info(std::string_view json, std::string_view name) {
   const nlohmann::json document = parse_metadata_json(json, name);
   const Groups groups = find_groups(MetadataGroup(&document, name, ""));
@@ -302,6 +331,7 @@ SensorInfo parse_sensor_info(std::string_view json, std::string_view name) {
   read_identity(groups, info);
   read_beams(groups, info);
   read_data_format(groups, info);
+  read_imu_format(groups, info);
   read_transforms(groups, info);
   check_azimuth_window(groups.config, info);
   return info;

@@ -44,6 +44,15 @@ enum class PacketHeader {
 /// The profile's name as sensors spell it, e.g. "RNG19_RFL8_SIG16_NIR16".
 std::string_view to_string(LidarProfile profile);
 
+/// What an IMU packet holds (sensor manual, "IMU data packet format").
+enum class ImuProfile {
+  kLegacy,             ///< One measurement a packet, at 100 Hz.
+  kAccel32Gyro32Nmea,  ///< Several a packet, in step with the lidar's frames (firmware 3.2 on).
+};
+
+/// The profile's name as sensors spell it, e.g. "ACCEL32_GYRO32_NMEA".
+std::string_view to_string(ImuProfile profile);
+
 /// What a sensor says of itself, from either form of its metadata: the flat one of firmware 1.x/2.0
 /// or the grouped one of later firmware. Immutable after parsing; safe to share between threads.
 struct SensorInfo {
@@ -72,6 +81,11 @@ struct SensorInfo {
   Eigen::Matrix4d beam_to_lidar = Eigen::Matrix4d::Identity();
   Eigen::Matrix4d lidar_to_sensor = Eigen::Matrix4d::Identity();
   Eigen::Matrix4d imu_to_sensor = Eigen::Matrix4d::Identity();
+
+  ImuProfile imu_profile = ImuProfile::kLegacy;
+  // Legacy packets hold one measurement and come at their own rate, so neither counts for them.
+  int imu_measurements_per_packet = 8;
+  int imu_packets_per_frame = 8;
 
   int lidar_port = 7502;  ///< UDP destination port of lidar packets; 7502 when not said.
   int imu_port = 7503;    ///< UDP destination port of IMU packets; 7503 when not said.

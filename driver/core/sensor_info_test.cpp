@@ -125,8 +125,29 @@ TEST(SensorInfo, AzimuthWindowInWholeDegreesIsWarnedOf) {
 
 TEST(SensorInfo, ImuProfileThatIsNotReadIsWarnedOf) {
   json metadata = flat_metadata();
+  metadata["data_format"]["udp_profile_imu"] = "ACCEL99_NEW";
+  const SensorInfo info = parse(metadata);
+  EXPECT_THAT(info.warnings, ElementsAre(HasSubstr("ACCEL99_NEW")));
+  EXPECT_EQ(info.imu_profile, ImuProfile::kLegacy);
+}
+
+TEST(SensorInfo, ImuProfileIsReadFromTheDataFormatOrTheConfiguration) {
+  json metadata = flat_metadata();
+  EXPECT_EQ(parse(metadata).imu_profile, ImuProfile::kLegacy);
+  metadata["udp_profile_imu"] = "ACCEL32_GYRO32_NMEA";
+  SensorInfo info = parse(metadata);
+  EXPECT_EQ(info.imu_profile, ImuProfile::kAccel32Gyro32Nmea);
+  EXPECT_EQ(info.imu_measurements_per_packet, 8);
+  EXPECT_THAT(info.warnings, IsEmpty());
+
   metadata["data_format"]["udp_profile_imu"] = "ACCEL32_GYRO32_NMEA";
-  EXPECT_THAT(parse(metadata).warnings, ElementsAre(HasSubstr("ACCEL32_GYRO32_NMEA")));
+  metadata["imu_data_format"] = {{"imu_measurements_per_packet", 16}, {"imu_packets_per_frame", 4}};
+  info = parse(metadata);
+  EXPECT_EQ(info.imu_measurements_per_packet, 16);
+  EXPECT_EQ(info.imu_packets_per_frame, 4);
+
+  metadata["imu_data_format"]["imu_packets_per_frame"] = 0;
+  expect_refused(metadata, "imu_data_format.imu_packets_per_frame must be");
 }
 
 TEST(SensorInfo, UnknownProfileIsNamedWithTheKnownOnes) {
@@ -191,6 +212,8 @@ TEST(SensorInfo, WrittenMetadataReadsBackEqual) {
     SensorInfo info = test::make_sensor(profile, 32, 512);
     info.column_window = {500, 11};
     info.lidar_port = 17502;
+    if (profile != LidarProfile::kLegacy) info.imu_profile = ImuProfile::kAccel32Gyro32Nmea;
+    info.imu_packets_per_frame = profile == LidarProfile::kLegacy ? 8 : 4;
     info.beam_altitude_deg[3] = 1.0 / 3.0;
     const SensorInfo read = parse_sensor_info(to_metadata_json(info), "m");
     EXPECT_EQ(to_metadata_json(read), to_metadata_json(info));
@@ -200,6 +223,9 @@ TEST(SensorInfo, WrittenMetadataReadsBackEqual) {
     EXPECT_EQ(read.lidar_to_sensor, info.lidar_to_sensor);
     EXPECT_EQ(read.beam_to_lidar, info.beam_to_lidar);
     EXPECT_EQ(read.lidar_port, 17502);
+    EXPECT_EQ(read.imu_profile, info.imu_profile);
+    EXPECT_EQ(read.imu_measurements_per_packet, info.imu_measurements_per_packet);
+    EXPECT_EQ(read.imu_packets_per_frame, info.imu_packets_per_frame);
   }
 }
 

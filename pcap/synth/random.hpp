@@ -45,6 +45,17 @@ class Random {
     const double u = 1.0 - uniform();
     return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * M_PI * uniform());
   }
+  /// Nearly normal, mean 0 and standard deviation 1, never beyond 4.9, in steps of 1/209: the sum
+  /// of eight 8-bit numbers, for what is needed millions of times a second.
+  double quick_gaussian() {
+    constexpr std::uint64_t kEven = 0x00FF00FF00FF00FFULL;
+    const std::uint64_t bits = next();
+    const std::uint64_t pairs = (bits & kEven) + ((bits >> 8) & kEven);
+    const std::uint64_t sum = (pairs * 0x0001000100010001ULL) >> 48;
+    // Discrete uniforms 0 ... 255: mean 127.5 and variance (256^2 - 1) / 12 each.
+    constexpr double kScale = 1.0 / 209.02153;  // sqrt(8 * 65535 / 12)
+    return (static_cast<double>(sum) - 1020.0) * kScale;
+  }
 
  private:
   std::uint64_t state_;

@@ -4,21 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "pcap/synth/blind_axes.hpp"
-#include "pcap/synth/random.hpp"
+#include "pcap/synth/motion/trajectory_file.hpp"
+#include "pcap/synth/scene/blind_axes.hpp"
 
 namespace glint::synth {
 namespace {
-
-constexpr std::int64_t kClockStartNs = 1'000 * kNsPerSecond;
-// The motor's speed swings by these shares, over so many revolutions.
-struct Swing {
-  double share;
-  double revolutions;
-};
-constexpr std::array<Swing, 2> kSwings = {{{0.002, 5.3}, {0.003, 0.97}}};
 
 // Columns that one call of the executor casts.
 constexpr int kBlockColumns = 32;
@@ -26,50 +17,92 @@ constexpr int kBlockColumns = 32;
 constexpr int kNormalStep = 4;
 
 int scans_in(const SimulationOptions& options) {
-  if (!(options.seconds > 0.0 && options.seconds <= 1e6)) {
-    throw OptionError("the duration must be above 0 and at most 1000000 seconds");
+  if (!(options.seconds > 0.0 && options.seconds <= 1e8)) {
+    throw OptionError("the duration must be above 0 and at most 100000000 seconds");
   }
-  return std::max(1, static_cast<int>(std::lround(options.seconds * options.sensor.rate_hz)));
+  const double scans = std::round(options.seconds * options.sensor.rate_hz);
+  return static_cast<int>(std::max(1.0, scans));
 }
 
-// When the sensor was switched on does not fall on a whole second.
-SensorTime start_of(std::uint64_t seed) {
-  Random random{seed, 0xC10CULL};
-  return {kClockStartNs + random.below(static_cast<int>(kNsPerSecond))};
+Motion motion_for(const SimulationOptions& options, const World& world) {
+  if (!options.trajectory.empty()) {
+    return load_trajectory(options.trajectory, options.sensor.rate_hz).motion;
+  }
+  MotionOptions motion = options.motion;
+  if (motion.kind.empty()) motion.kind = world.motion;
+  return make_motion(world.route, motion, options.seed);
+}
+
+// Fills in share and runs from the pixels' flags.
+void set_moving(const LidarScan& scan, const Image<std::uint8_t>& moving, ScanTruth& truth) {
+  truth.moving.clear();
+  std::size_t points = 0;
+  std::size_t on_moving = 0;
+  for (int row = 0; row < moving.rows; ++row) {
+    for (int m = 0; m < moving.cols; ++m) {
+      points += scan.range_mm(row, m) > 0 ? 1 : 0;
+      if (moving(row, m) == 0) continue;
+      ++on_moving;
+      const bool goes_on = !truth.moving.empty() && truth.moving.back().row == row &&
+                           truth.moving.back().last_column == m - 1;
+      if (!goes_on) truth.moving.push_back({row, m, m});
+      truth.moving.back().last_column = m;
+    }
+  }
+  truth.moving_share =
+      points > 0 ? static_cast<double>(on_moving) / static_cast<double>(points) : 0.0;
 }
 
 }  // namespace
 
+// One scan in the making. Columns write to different places and may do so on different threads.
+struct Simulator::Casting {
+  LidarScan& scan;
+  std::vector<Eigen::Vector3d> normals;  ///< Of every kNormalStep-th point.
+  Image<std::uint8_t> moving;            ///< 1: on a moving thing.
+};
+
+// Where the sensor is while it measures a column.
+struct Simulator::Column {
+  int m;
+  Eigen::Matrix3d rotation;
+  Eigen::Vector3d at_m;
+  Scene::Moment moment;
+};
+
 Simulator::Simulator(const SimulationOptions& options)
     : options_(options),
       info_(make_sensor(options.sensor, options.seed)),
-      world_(make_world(options.world, options.seed)),
+      world_(make_world({options.world, options.seed, options.photographs})),
+      motion_(motion_for(options, world_)),
       lut_(info_),
       model_(info_, options.noise, options.seed),
+      timing_(info_, options.seed),
       scan_count_(scans_in(options)),
-      start_(start_of(options.seed)) {}
+      first_silent_scan_(first_scan_from(options.stream.restart_at_s)),
+      restart_scan_(first_scan_from(options.stream.restart_at_s + options.stream.restart_gap_s)) {}
 
-Pose Simulator::true_pose(SensorTime time) const {
-  return world_.motion.at(static_cast<double>(time - start_) * kSecondsPerNs);
-}
-
-SensorTime Simulator::column_time(std::int64_t column) const {
-  const double revolutions = static_cast<double>(column) / info_.columns_per_frame;
-  double turned = revolutions;
-  for (const Swing& swing : kSwings) {
-    const double rate = 2.0 * std::numbers::pi / swing.revolutions;
-    turned += swing.share / rate * std::sin(rate * revolutions);
+int Simulator::first_scan_from(double true_s) const {
+  int scan = 0;
+  if (options_.stream.restart_at_s <= 0.0) return scan_count_;
+  while (scan < scan_count_ &&
+         timing_.column_s(std::int64_t{scan} * info_.columns_per_frame) < true_s) {
+    ++scan;
   }
-  return start_ + std::llround(static_cast<double>(info_.scan_period_ns()) * turned);
+  return scan;
 }
 
-void Simulator::set_header(LidarScan& scan) const {
+void Simulator::set_header(LidarScan& scan, ScanTruth& truth) const {
   const int columns = info_.columns_per_frame;
+  truth.restarted = next_scan_ >= restart_scan_;
+  const int frame =
+      truth.restarted ? next_scan_ - restart_scan_ : options_.sensor.first_frame_id + next_scan_;
   scan.sequence = static_cast<std::uint64_t>(next_scan_);
-  scan.frame_id = static_cast<std::uint16_t>(options_.sensor.first_frame_id + next_scan_);
+  scan.frame_id = static_cast<std::uint16_t>(frame);
   for (int m = 0; m < columns; ++m) {
     const auto column = static_cast<std::size_t>(m);
-    scan.column_time[column] = column_time(std::int64_t{next_scan_} * columns + m);
+    scan.column_time[column] =
+        timing_.clock_at(timing_.column_s(std::int64_t{next_scan_} * columns + m));
     scan.column_status[column] = info_.profile == LidarProfile::kLegacy ? 0xFFFFFFFFU : 1U;
   }
   scan.columns_expected = scan.columns_received = columns;
@@ -78,18 +111,22 @@ void Simulator::set_header(LidarScan& scan) const {
 }
 
 bool Simulator::next(LidarScan& scan, ScanTruth& truth) {
+  if (next_scan_ >= first_silent_scan_) next_scan_ = std::max(next_scan_, restart_scan_);
   if (next_scan_ >= scan_count_) return false;
   const int columns = info_.columns_per_frame;
-  if (scan.range_mm.cols != columns) scan = LidarScan(PacketFormat(info_));
-  set_header(scan);
+  const int rows = info_.pixels_per_column;
+  if (scan.range_mm.cols != columns || scan.range_mm.rows != rows) {
+    scan = LidarScan(PacketFormat(info_));
+  }
+  set_header(scan, truth);
 
-  const int normals_in_column = info_.pixels_per_column / kNormalStep;
-  std::vector<Eigen::Vector3d> normals(
-      static_cast<std::size_t>(columns / kNormalStep) * static_cast<std::size_t>(normals_in_column),
-      Eigen::Vector3d::Zero());
+  const int normals = columns / kNormalStep * (rows / kNormalStep);
+  Casting casting{scan,
+                  {static_cast<std::size_t>(normals), Eigen::Vector3d::Zero()},
+                  Image<std::uint8_t>(rows, columns)};
   options_.parallel_for(columns / kBlockColumns, [&](int block) {
-    for (int m = block * kBlockColumns; m < (block + 1) * kBlockColumns; ++m) {
-      cast_column(m, scan, normals);
+    for (int m = block * kBlockColumns; m < (block + 1) * kBlockColumns; m += kPacketRays) {
+      cast_columns(m, casting);
     }
   });
 
@@ -97,8 +134,8 @@ bool Simulator::next(LidarScan& scan, ScanTruth& truth) {
   truth.frame_id = scan.frame_id;
   truth.start = scan.column_time.front();
   truth.T_world_sensor = true_pose(truth.start);
-  truth.moving_share = 0.0;
-  truth.blind_axes = blind_axes(normals);
+  set_moving(scan, casting.moving, truth);
+  truth.blind_axes = blind_axes(casting.normals);
   for (Eigen::Vector3d& axis : truth.blind_axes) {
     axis = truth.T_world_sensor.rotation.conjugate() * axis;
   }
@@ -106,29 +143,79 @@ bool Simulator::next(LidarScan& scan, ScanTruth& truth) {
   return true;
 }
 
-void Simulator::cast_column(int m, LidarScan& scan, std::vector<Eigen::Vector3d>& normals) const {
-  const Pose T_world_sensor = true_pose(scan.column_time[static_cast<std::size_t>(m)]);
-  // Ranges count from where the ray meets the offset, so that a decoded point is offset + range *
-  // direction. The table's directions are per millimetre.
-  const Eigen::Matrix3d rotation = T_world_sensor.rotation.toRotationMatrix();
-  const Eigen::Matrix3d unit_rotation = 1000.0 * rotation;
-  const std::uint64_t column = scan.sequence * static_cast<std::uint64_t>(info_.columns_per_frame) +
-                               static_cast<std::uint64_t>(m);
+Simulator::Column Simulator::column_at(int m, const LidarScan& scan) const {
+  const double t_s = timing_.true_s(scan.column_time[static_cast<std::size_t>(m)]);
+  const Pose T_world_sensor = motion_(t_s);
+  return {m, T_world_sensor.rotation.toRotationMatrix(), T_world_sensor.translation_m,
+          world_.scene.at(t_s)};
+}
+
+// Neighbouring columns together: the rays of one row go side by side.
+void Simulator::cast_columns(int first, Casting& casting) const {
+  const std::array<Column, kPacketRays> columns = {
+      column_at(first, casting.scan), column_at(first + 1, casting.scan),
+      column_at(first + 2, casting.scan), column_at(first + 3, casting.scan)};
+  std::array<const Scene::Moment*, kPacketRays> moments;
+  for (std::size_t i = 0; i < columns.size(); ++i) moments[i] = &columns[i].moment;
   for (int row = 0; row < info_.pixels_per_column; ++row) {
-    const Ray ray{rotation * lut_.offset(row, m) + T_world_sensor.translation_m,
-                  unit_rotation * lut_.direction(row, m)};
-    const auto sighting = world_.scene.cast(ray);
-    const Measurement measured = model_.measure(sighting, ray.direction, row,
-                                                column << 8U | static_cast<std::uint64_t>(row));
-    scan.range_mm(row, m) = measured.range_mm;
-    if (!scan.signal.empty()) scan.signal(row, m) = measured.signal;
-    scan.reflectivity(row, m) = measured.reflectivity;
-    scan.near_ir(row, m) = measured.near_ir;
-    if (m % kNormalStep == 0 && row % kNormalStep == 0 && measured.range_mm > 0) {
-      const int index =
-          m / kNormalStep * (info_.pixels_per_column / kNormalStep) + row / kNormalStep;
-      normals[static_cast<std::size_t>(index)] = sighting->hit.normal;
+    Rays rays;
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      // Ranges count from where the ray meets the offset, so that a decoded point is offset + range
+      // * direction. The table's directions are per millimetre.
+      const Column& column = columns[i];
+      rays[i] = {column.rotation * lut_.offset(row, column.m) + column.at_m,
+                 1000.0 * (column.rotation * lut_.direction(row, column.m))};
     }
+    const Sightings sightings = world_.scene.cast(moments, rays, model_.beam_rad());
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      set_pixel(columns[i], rays[i], sightings[i], row, casting);
+    }
+  }
+}
+
+Measurement Simulator::measure(const Column& column, const Ray& ray, const Sighting& sighting,
+                               int row, std::uint64_t pixel_key) const {
+  if (!sighting.at_edge()) {
+    const BeamPart whole{1.0, ray.direction, sighting};
+    return model_.measure({&whole, 1}, row, pixel_key);
+  }
+  // The beam falls on more than one thing.
+  std::array<BeamPart, SensorModel::kParts> parts;
+  static_assert(SensorModel::kParts == kPacketRays + 1);
+  model_.split(ray.direction, parts);
+  parts[0].sighting = sighting;
+  std::array<const Scene::Moment*, kPacketRays> moments;
+  moments.fill(&column.moment);
+  Rays rays;
+  for (std::size_t i = 0; i < rays.size(); ++i) rays[i] = {ray.origin_m, parts[i + 1].direction};
+  const Sightings sightings = world_.scene.cast(moments, rays, 0.0);
+  for (std::size_t i = 0; i < rays.size(); ++i) parts[i + 1].sighting = sightings[i];
+  return model_.measure(parts, row, pixel_key);
+}
+
+void Simulator::set_pixel(const Column& column, const Ray& ray, const Sighting& sighting, int row,
+                          Casting& casting) const {
+  const int m = column.m;
+  LidarScan& scan = casting.scan;
+  const std::uint64_t number = scan.sequence * static_cast<std::uint64_t>(info_.columns_per_frame) +
+                               static_cast<std::uint64_t>(m);
+  const Measurement measured =
+      measure(column, ray, sighting, row, number << 8U | static_cast<std::uint64_t>(row));
+  const auto& [first, second] = measured.returns;
+  scan.range_mm(row, m) = first.range_mm;
+  scan.reflectivity(row, m) = first.reflectivity;
+  if (!scan.near_ir.empty()) scan.near_ir(row, m) = measured.near_ir;
+  if (!scan.signal.empty()) scan.signal(row, m) = first.signal;
+  if (!scan.range2_mm.empty()) {
+    scan.range2_mm(row, m) = second.range_mm;
+    scan.signal2(row, m) = second.signal;
+    scan.reflectivity2(row, m) = second.reflectivity;
+  }
+  casting.moving(row, m) = first.moving ? 1 : 0;
+  if (m % kNormalStep == 0 && row % kNormalStep == 0 && first.range_mm > 0 &&
+      sighting.surface != nullptr) {
+    const int index = m / kNormalStep * (info_.pixels_per_column / kNormalStep) + row / kNormalStep;
+    casting.normals[static_cast<std::size_t>(index)] = sighting.hit.normal;
   }
 }
 

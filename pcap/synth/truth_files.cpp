@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright 2026 The Glint Authors
+#include "pcap/synth/truth_files.hpp"
+
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "driver/core/error.hpp"
 #include "pcap/capture_writer.hpp"
-#include "pcap/synth/simulator.hpp"
+#include "pcap/synth/synthetic_source.hpp"
 
 namespace glint::synth {
 namespace {
@@ -67,28 +72,52 @@ class TextFile {
 // Scans where the path came by before, in runs.
 class RevisitFinder {
  public:
-  nlohmann::json add(const Eigen::Vector3d& here_m) {
-    const double way_m =
-        places_.empty() ? 0.0 : places_.back().way_m + (here_m - places_.back().at_m).norm();
-    nlohmann::json runs = nlohmann::json::array();
-    int last = -2;
-    for (int i = 0; i < static_cast<int>(places_.size()); ++i) {
-      const Place& place = places_[static_cast<std::size_t>(i)];
-      if (way_m - place.way_m < kRevisitWayM) break;
-      if ((place.at_m - here_m).norm() > kRevisitM) continue;
-      if (last != i - 1) runs.push_back({i, i});
-      runs.back()[1] = last = i;
+  nlohmann::json add(int scan, const Eigen::Vector3d& here_m) {
+    if (last_scan_ >= 0) way_m_ += (here_m - last_m_).norm();
+    std::vector<int> near;
+    const Cell cell = cell_of(here_m);
+    for (int i = 0; i < 27; ++i) {
+      const auto found =
+          places_.find({cell[0] + i % 3 - 1, cell[1] + i / 3 % 3 - 1, cell[2] + i / 9 - 1});
+      if (found == places_.end()) continue;
+      for (const Place& place : found->second) {
+        if (way_m_ - place.way_m >= kRevisitWayM && (place.at_m - here_m).norm() <= kRevisitM) {
+          near.push_back(place.scan);
+        }
+      }
     }
-    places_.push_back({here_m, way_m});
-    return runs;
+    places_[cell].push_back({scan, here_m, way_m_});
+    last_scan_ = scan;
+    last_m_ = here_m;
+    return runs(std::move(near));
   }
 
  private:
+  using Cell = std::array<int, 3>;
   struct Place {
+    int scan;
     Eigen::Vector3d at_m;
     double way_m;
   };
-  std::vector<Place> places_;
+  static Cell cell_of(const Eigen::Vector3d& at_m) {
+    const Eigen::Vector3d cell = (at_m / kRevisitM).array().floor();
+    return {static_cast<int>(cell.x()), static_cast<int>(cell.y()), static_cast<int>(cell.z())};
+  }
+  static nlohmann::json runs(std::vector<int> scans) {
+    std::sort(scans.begin(), scans.end());
+    nlohmann::json runs = nlohmann::json::array();
+    int last = -2;
+    for (const int scan : scans) {
+      if (last != scan - 1) runs.push_back({scan, scan});
+      runs.back()[1] = last = scan;
+    }
+    return runs;
+  }
+
+  std::map<Cell, std::vector<Place>> places_;
+  int last_scan_ = -1;
+  Eigen::Vector3d last_m_ = Eigen::Vector3d::Zero();
+  double way_m_ = 0.0;
 };
 
 std::string seconds(SensorTime time) {
@@ -108,18 +137,23 @@ std::string truth_line(const ScanTruth& truth, RevisitFinder& revisits) {
                                  {"t_ns", truth.start.ns},
                                  {"t", seconds(truth.start)},
                                  {"blind_axes", nlohmann::json::array()},
-                                 {"moving_share", truth.moving_share}};
+                                 {"moving_share", truth.moving_share},
+                                 {"moving_pixels", nlohmann::json::array()}};
   for (const Eigen::Vector3d& axis : truth.blind_axes) {
     line["blind_axes"].push_back({axis.x(), axis.y(), axis.z()});
   }
-  line["earlier_scans_within_2m"] = revisits.add(truth.T_world_sensor.translation_m);
+  for (const MovingRun& run : truth.moving) {
+    line["moving_pixels"].push_back({run.row, run.first_column, run.last_column});
+  }
+  line["earlier_scans_within_2m"] = revisits.add(truth.scan, truth.T_world_sensor.translation_m);
   return line.dump();
 }
 
 void write_dense_truth(const Simulator& simulator, TextFile& file) {
-  const SensorTime end = simulator.column_time(std::int64_t{simulator.scan_count()} *
-                                               simulator.info().columns_per_frame);
-  for (SensorTime t = simulator.column_time(0); t <= end; t = t + kDenseStepNs) {
+  const Timing& timing = simulator.timing();
+  const SensorTime end = timing.clock_at(
+      timing.column_s(std::int64_t{simulator.scan_count()} * simulator.info().columns_per_frame));
+  for (SensorTime t = timing.clock_at(0.0); t <= end; t = t + kDenseStepNs) {
     file.line(tum_line(t, simulator.true_pose(t)));
   }
 }
@@ -134,32 +168,31 @@ void make_directory(const std::filesystem::path& directory) {
 
 }  // namespace
 
-void simulate(const SimulationOptions& options, const std::filesystem::path& directory,
-              const std::function<void(int done, int all)>& progress) {
+FaultCounts simulate(const SimulationOptions& options, const std::filesystem::path& directory,
+                     int mtu, const std::function<void(int done, int all)>& progress) {
   SyntheticSource source(options);
   const Simulator& simulator = source.simulator();
   make_directory(directory);
-  CaptureWriter capture(directory / "capture.pcap");
+  CaptureWriter capture(directory / "capture.pcap", {mtu});
   TextFile metadata(directory / "metadata.json");
   TextFile starts(directory / "groundtruth.tum");
   TextFile dense(directory / "groundtruth_100hz.tum");
   TextFile truth(directory / "truth.jsonl");
   metadata.line(to_metadata_json(simulator.info()));
 
-  const auto port = static_cast<std::uint16_t>(simulator.info().lidar_port);
-  const Endpoint sensor{IpAddress::v4(192, 168, 100, 2), port};
-  const Endpoint host{IpAddress::v4(192, 168, 100, 1), port};
+  const IpAddress sensor = IpAddress::v4(192, 168, 100, 2);
+  const IpAddress host = IpAddress::v4(192, 168, 100, 1);
   RevisitFinder revisits;
   RawPacket packet;
-  std::size_t scans = 0;
+  int written = -1;
   while (source.read(packet) == SourceStatus::kPacket) {
-    capture.write(packet.host_time, sensor, host, packet.bytes);
-    if (source.truth().size() == scans) continue;
-    const ScanTruth& scan = source.truth().back();
+    capture.write(packet.host_time, {sensor, packet.port}, {host, packet.port}, packet.bytes);
+    const ScanTruth& scan = source.truth();
+    if (scan.scan == written) continue;
+    written = scan.scan;
     starts.line(tum_line(scan.start, scan.T_world_sensor));
     truth.line(truth_line(scan, revisits));
-    scans = source.truth().size();
-    if (progress) progress(static_cast<int>(scans), simulator.scan_count());
+    if (progress) progress(written + 1, simulator.scan_count());
   }
   write_dense_truth(simulator, dense);
 
@@ -171,6 +204,7 @@ void simulate(const SimulationOptions& options, const std::filesystem::path& dir
   dense.finish();
   truth.finish();
   capture.finish();
+  return source.faults();
 }
 
 }  // namespace glint::synth

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "driver/core/scan_assembler.hpp"
-#include "pcap/synth/simulator.hpp"
+#include "pcap/synth/synthetic_source.hpp"
 #include "slam/frontend.hpp"
 
 namespace glint {

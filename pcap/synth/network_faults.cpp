@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#include "pcap/synth/network_faults.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "pcap/synth/option_error.hpp"
+
+namespace glint::synth {
+namespace {
+
+constexpr int kMostBehind = 3;
+
+void require_share(double share, const char* what) {
+  if (share >= 0.0 && share < 1.0) return;
+  throw OptionError(
+      fmt::format("{} is a share of all datagrams, from 0 to below 1, not {}", what, share));
+}
+
+}  // namespace
+
+FaultyNetwork::FaultyNetwork(const NetworkFaults& faults, std::uint64_t seed)
+    : faults_(faults), random_{seed, 0x9E7F417ULL} {
+  require_share(faults.loss, "loss");
+  require_share(faults.duplicates, "duplicates");
+  require_share(faults.reordering, "reordering");
+}
+
+SourceStatus FaultyNetwork::receive(const std::function<SourceStatus(RawPacket&)>& send,
+                                    RawPacket& packet) {
+  while (true) {
+    if (arrive_late(packet, false)) return SourceStatus::kPacket;
+    const SourceStatus status = send(packet);
+    if (status == SourceStatus::kEnd && arrive_late(packet, true)) return SourceStatus::kPacket;
+    if (status != SourceStatus::kPacket) return status;
+    ++counts_.sent;
+    if (random_.chance(faults_.loss)) {
+      ++counts_.lost;
+      continue;
+    }
+    if (random_.chance(faults_.reordering)) {
+      ++counts_.delayed;
+      hold(packet);
+      continue;
+    }
+    for (Held& held : held_) --held.behind;
+    now_ = packet.host_time;
+    if (random_.chance(faults_.duplicates)) {
+      ++counts_.duplicated;
+      hold(packet);
+    }
+    return status;
+  }
+}
+
+void FaultyNetwork::hold(const RawPacket& packet) {
+  held_.push_back({packet, 1 + random_.below(kMostBehind)});
+}
+
+bool FaultyNetwork::arrive_late(RawPacket& packet, bool line_is_empty) {
+  const auto due = std::find_if(held_.begin(), held_.end(), [&](const Held& held) {
+    return held.behind <= 0 || line_is_empty;
+  });
+  if (due == held_.end()) return false;
+  packet = std::move(due->packet);
+  packet.host_time = std::max(packet.host_time, now_);
+  held_.erase(due);
+  return true;
+}
+
+}  // namespace glint::synth
