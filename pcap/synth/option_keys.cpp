@@ -49,9 +49,7 @@ auto profile_named(const Profiles& profiles, const std::string& text) {
 const std::array kKeys = {
     GLINT_NUMBER("seconds", "How long, s", double, seconds),
     GLINT_NUMBER("seed", "Layout, way, sensor and noise follow from it", std::uint64_t, seed),
-    OptionKey{"profile",
-              "What lidar packets hold: LEGACY, RNG19_RFL8_SIG16_NIR16, ..._DUAL or "
-              "RNG15_RFL8_NIR8",
+    OptionKey{"profile", "What lidar packets hold: any profile that glint reads, e.g. LEGACY",
               false, [](const Options& o) { return std::string(to_string(o.sensor.profile)); },
               [](Options& o, const std::string& text) {
                 o.sensor.profile = profile_named(lidar_profiles(), text);
