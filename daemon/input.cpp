@@ -7,12 +7,16 @@
 #include <spdlog/spdlog.h>
 
 #include <ctime>
+#include <optional>
 
 #include "daemon/parallel_for.hpp"
 #include "daemon/replay_pacer.hpp"
 #include "daemon/server.hpp"
 #include "driver/udp_source.hpp"
 #include "pcap/pcap_source.hpp"
+#include "pcap/recording/recording_files.hpp"
+#include "pcap/recording/recording_metadata.hpp"
+#include "pcap/recording/recording_source.hpp"
 #include "pcap/synth/option_keys.hpp"
 #include "pcap/synth/synthetic_source.hpp"
 
@@ -59,6 +63,10 @@ std::unique_ptr<PacketSource> open_capture(const fs::path& file, const SensorInf
       return pacer->wait(time);
     };
   }
+  if (recording::is_recording(file)) {
+    return std::make_unique<recording::RecordingSource>(
+        file, info, recording::RecordingSourceOptions{"", source_options.pacer});
+  }
   if (!config.sensor.source_address.empty()) {
     source_options.source_ip = IpAddress::parse(config.sensor.source_address);
     if (!source_options.source_ip) {
@@ -66,9 +74,7 @@ std::unique_ptr<PacketSource> open_capture(const fs::path& file, const SensorInf
                                     config.sensor.source_address));
     }
   }
-  auto source = std::make_unique<PcapSource>(file, info, source_options);
-  log_sentences(source->notices());
-  return source;
+  return std::make_unique<PcapSource>(file, info, source_options);
 }
 
 std::unique_ptr<UdpSource> open_udp(const SensorInfo& info, const Config::Sensor& sensor) {
@@ -90,11 +96,23 @@ std::unique_ptr<UdpSource> open_udp(const SensorInfo& info, const Config::Sensor
   return source;
 }
 
+/// From a file, or from inside a recording if there is none.
+SensorInfo capture_info(const InputOptions& options, const Config& config, const fs::path& file) {
+  std::optional<std::string> inside;
+  if (options.metadata.empty() && config.sensor.metadata_file.empty() &&
+      recording::is_recording(file)) {
+    inside = recording::find_metadata(file);
+  }
+  return inside ? parse_sensor_info(*inside, file.string())
+                : load_sensor_info(metadata_file(options, config, file));
+}
+
 Input open_capture_input(const fs::path& file, const InputOptions& options, const Config& config) {
   try {
     Input input;
-    input.info = load_sensor_info(metadata_file(options, config, file));
+    input.info = capture_info(options, config, file);
     input.source = open_capture(file, input.info, options, config);
+    log_sentences(input.source->notices());
     input.options.lossless = true;
     input.options.source_name = fmt::format("pcap:{}", file.string());
     return input;

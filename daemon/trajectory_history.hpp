@@ -18,7 +18,7 @@ struct PoseRecord {
   Twist velocity = Twist::Zero();  ///< As OdometryEstimate::velocity.
   slam::TrackingState state = slam::TrackingState::kInit;
   std::uint32_t segment = 0;
-  std::uint16_t frame_id = 0;
+  std::uint32_t frame_id = 0;
 };
 
 /// Past poses with strictly rising times, in chunks that copies of the history share: a copy costs

@@ -53,7 +53,7 @@ class PcapSource : public PacketSource {
 
   /// What a user should know: packets on other ports than metadata says, a second sensor, and,
   /// once the end is reached, that the capture broke off.
-  [[nodiscard]] const std::vector<std::string>& notices() const { return flow_.notices; }
+  [[nodiscard]] std::vector<std::string> notices() const override { return flow_.notices; }
   [[nodiscard]] const SensorFlow& flow() const { return flow_; }
   [[nodiscard]] const PcapSourceCounters& counters() const { return counters_; }
   [[nodiscard]] CaptureCounters capture_counters() const { return reader_.counters(); }

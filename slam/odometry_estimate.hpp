@@ -19,7 +19,7 @@ std::string_view to_string(TrackingState state);
 /// What one scan says of the sensor's motion. Value type.
 struct OdometryEstimate {
   std::uint64_t sequence = 0;  ///< LidarScan::sequence.
-  std::uint16_t frame_id = 0;  ///< As on the wire.
+  std::uint32_t frame_id = 0;  ///< As on the wire.
   /// The pose belongs to the time of the scan's nominal last column.
   SensorTime stamp;
   /// Pose of the sensor in the odometry frame (smooth, drifts). Always finite.

@@ -124,7 +124,7 @@ bool SessionStore::Impl::insert(const Keyframe& keyframe, const Pose& T_map_sens
   sqlite3_stmt* s = add_keyframe.get();
   sqlite3_bind_int64(s, 1, static_cast<sqlite3_int64>(keyframe.id));
   sqlite3_bind_int64(s, 2, keyframe.estimate.stamp.ns);
-  sqlite3_bind_int(s, 3, keyframe.estimate.frame_id);
+  sqlite3_bind_int64(s, 3, keyframe.estimate.frame_id);
   sqlite3_bind_int64(s, 4, keyframe.estimate.segment);
   sqlite3_bind_blob(s, 5, odom.data(), sizeof odom, SQLITE_TRANSIENT);
   sqlite3_bind_blob(s, 6, map.data(), sizeof map, SQLITE_TRANSIENT);

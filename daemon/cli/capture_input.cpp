@@ -8,19 +8,32 @@
 
 #include "daemon/cli/command.hpp"
 #include "driver/core/error.hpp"
+#include "pcap/recording/recording_files.hpp"
+#include "pcap/recording/recording_metadata.hpp"
+#include "pcap/recording/recording_source.hpp"
 
 namespace glint::cli {
 
 namespace fs = std::filesystem;
 
 void add_capture_options(CLI::App& command, CaptureInput& input) {
-  command.add_option("CAPTURE", input.capture, "pcap or pcapng file")->required();
-  command.add_option("--meta", input.meta,
-                     "Sensor metadata (JSON); default: STEM.json, else metadata.json, beside it");
-  command.add_option("--source-ip", input.source_ip, "Only packets that this address sent");
+  command
+      .add_option("CAPTURE", input.capture,
+                  "Capture (pcap, pcapng) or recording (ROS 1 bag, ROS 2 bag, MCAP)")
+      ->required();
+  command.add_option(
+      "--meta", input.meta,
+      "Sensor metadata (JSON); default: STEM.json, else metadata.json, beside it, else the "
+      "recording's own");
+  command.add_option("--source-ip", input.source_ip,
+                     "Of a capture: only packets that this address sent");
+  command.add_option("--topic", input.topic, "Of a recording: only topics that begin with this");
 }
 
-std::optional<fs::path> find_metadata(const CaptureInput& input) {
+namespace {
+
+// The file named, or found beside the capture.
+std::optional<fs::path> find_metadata_file(const CaptureInput& input) {
   std::error_code ignored;
   const fs::path capture = input.capture;
   if (!fs::exists(capture, ignored)) {
@@ -36,19 +49,9 @@ std::optional<fs::path> find_metadata(const CaptureInput& input) {
   return std::nullopt;
 }
 
-SensorInfo load_capture_info(const CaptureInput& input) {
-  const std::optional<fs::path> file = find_metadata(input);
-  if (!file) {
-    fs::path beside = input.capture;
-    beside.replace_extension(".json");
-    throw InputError(
-        fmt::format("There is no metadata for {}: neither {} nor metadata.json beside it; name the "
-                    "sensor's metadata file with --meta.",
-                    input.capture, beside.string()));
-  }
-  SensorInfo info = load_sensor_info(*file);
-  print_notices(info.warnings);
-  return info;
+std::optional<std::string> metadata_inside(const CaptureInput& input) {
+  if (!recording::is_recording(input.capture)) return std::nullopt;
+  return recording::find_metadata(input.capture, input.topic);
 }
 
 std::optional<IpAddress> source_address(const CaptureInput& input) {
@@ -61,6 +64,40 @@ std::optional<IpAddress> source_address(const CaptureInput& input) {
                     input.source_ip));
   }
   return address;
+}
+
+}  // namespace
+
+bool has_capture_info(const CaptureInput& input) {
+  return find_metadata_file(input) || metadata_inside(input);
+}
+
+SensorInfo load_capture_info(const CaptureInput& input) {
+  SensorInfo info;
+  if (const auto file = find_metadata_file(input)) {
+    info = load_sensor_info(*file);
+  } else if (const auto json = metadata_inside(input)) {
+    info = parse_sensor_info(*json, input.capture);
+  } else {
+    fs::path beside = input.capture;
+    beside.replace_extension(".json");
+    throw InputError(
+        fmt::format("There is no metadata for {}: neither {} nor metadata.json beside it; name the "
+                    "sensor's metadata file with --meta.",
+                    input.capture, beside.string()));
+  }
+  print_notices(info.warnings);
+  return info;
+}
+
+std::unique_ptr<PacketSource> open_capture(const CaptureInput& input, const SensorInfo& info,
+                                           const Pacer& pacer) {
+  if (recording::is_recording(input.capture)) {
+    return std::make_unique<recording::RecordingSource>(
+        input.capture, info, recording::RecordingSourceOptions{input.topic, pacer});
+  }
+  return std::make_unique<PcapSource>(input.capture, info,
+                                      PcapSourceOptions{source_address(input), pacer});
 }
 
 void print_notices(const std::vector<std::string>& notices) {

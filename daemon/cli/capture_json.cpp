@@ -2,6 +2,8 @@
 // Copyright 2026 The Glint Authors
 #include "daemon/cli/capture_json.hpp"
 
+#include "pcap/recording/recording_source.hpp"
+
 namespace glint::cli {
 
 using Json = nlohmann::ordered_json;
@@ -44,6 +46,24 @@ Json to_json(const CaptureCounters& c) {
             {"bad_checksums", r.bad_checksums},
             {"timed_out", r.timed_out},
             {"evicted", r.evicted}}}};
+}
+
+Json source_json(const PacketSource& source) {
+  if (const auto* pcap = dynamic_cast<const PcapSource*>(&source)) {
+    return to_json(pcap->counters());
+  }
+  if (const auto* messages = dynamic_cast<const recording::RecordingSource*>(&source)) {
+    const recording::RecordingSourceCounters& c = messages->counters();
+    return {{"lidar_packets", c.lidar_packets}, {"imu_packets", c.imu_packets},
+            {"other_sensors", c.other_sensors}, {"wrong_size", c.wrong_size},
+            {"malformed", c.malformed},         {"other_topics", c.other_topics}};
+  }
+  return nullptr;
+}
+
+Json capture_json(const PacketSource& source) {
+  const auto* pcap = dynamic_cast<const PcapSource*>(&source);
+  return pcap == nullptr ? Json(nullptr) : to_json(pcap->capture_counters());
 }
 
 }  // namespace glint::cli

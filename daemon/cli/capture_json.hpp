@@ -13,5 +13,9 @@ namespace glint::cli {
 nlohmann::ordered_json to_json(const AssemblerCounters& counters);
 nlohmann::ordered_json to_json(const PcapSourceCounters& counters);
 nlohmann::ordered_json to_json(const CaptureCounters& counters);
+/// Of a capture or a recording: what became of its datagrams or messages.
+nlohmann::ordered_json source_json(const PacketSource& source);
+/// Of a capture's records; null for recordings.
+nlohmann::ordered_json capture_json(const PacketSource& source);
 
 }  // namespace glint::cli

@@ -155,8 +155,8 @@ void make_folder(const fs::path& folder) {
 void dump(const DumpOptions& options) {
   const FrameRange range = parse_frames(options.frames);
   const SensorInfo info = load_capture_info(options.input);
-  PcapSource source(options.input.capture, info, {source_address(options.input), {}});
-  ScanReader reader(source, info);
+  const auto source = open_capture(options.input, info);
+  ScanReader reader(*source, info);
   const fs::path folder = options.out;
   make_folder(folder);
 
@@ -171,7 +171,7 @@ void dump(const DumpOptions& options) {
     frames.push_back(describe(*scan, index, prefix));
   }
 
-  print_notices(source.notices());
+  print_notices(source->notices());
   const Json summary = {{"capture", options.input.capture},
                         {"profile", to_string(info.profile)},
                         {"rows", info.pixels_per_column},
@@ -179,9 +179,9 @@ void dump(const DumpOptions& options) {
                         {"frames", frames},
                         {"counters",
                          {{"assembler", to_json(reader.assembler().counters())},
-                          {"source", to_json(source.counters())},
-                          {"capture", to_json(source.capture_counters())}}},
-                        {"notices", source.notices()}};
+                          {"source", source_json(*source)},
+                          {"capture", capture_json(*source)}}},
+                        {"notices", source->notices()}};
   write_text_file(folder / "index.json", summary.dump(2) + "\n");
   std::cout << fmt::format("{} frames written to {}\n", frames.size(), folder.string());
 }

@@ -33,7 +33,7 @@ struct Sent {
 };
 
 /// Sends the capture once.
-void send_capture(PcapSource& source, std::size_t imu_bytes, const UdpSender& lidar,
+void send_capture(PacketSource& source, std::size_t imu_bytes, const UdpSender& lidar,
                   const UdpSender& imu, Sent& sent) {
   RawPacket packet;
   SourceStatus status = source.read(packet);
@@ -61,16 +61,16 @@ void emulate(const EmulateOptions& options) {
 
   const std::optional<double> rate = daemon::parse_rate(options.rate);
   daemon::ReplayPacer pacer(rate.value_or(1.0));
-  PcapSourceOptions source_options{source_address(options.input), {}};
-  if (rate) source_options.pacer = [&pacer](HostTime time) { return pacer.wait(time); };
+  Pacer wait;
+  if (rate) wait = [&pacer](HostTime time) { return pacer.wait(time); };
 
   Sent sent;
   const std::int64_t start_ns = daemon::steady_now_ns();
   for (int loop = 0; loop < options.loops; ++loop) {
-    PcapSource source(options.input.capture, info, source_options);
+    const auto source = open_capture(options.input, info, wait);
     pacer.restart();
-    send_capture(source, PacketFormat(info).imu_packet_bytes, lidar, imu, sent);
-    if (loop == 0) print_notices(source.notices());
+    send_capture(*source, PacketFormat(info).imu_packet_bytes, lidar, imu, sent);
+    if (loop == 0) print_notices(source->notices());
   }
   const double seconds = static_cast<double>(daemon::steady_now_ns() - start_ns) * kSecondsPerNs;
   std::cout << fmt::format(

@@ -12,6 +12,9 @@
 #include "daemon/cli/scan_reader.hpp"
 #include "driver/core/packet_view.hpp"
 #include "pcap/flow_survey.hpp"
+#include "pcap/recording/recording_files.hpp"
+#include "pcap/recording/recording_format.hpp"
+#include "pcap/recording/topic_survey.hpp"
 
 namespace glint::cli {
 namespace {
@@ -69,10 +72,13 @@ class ReorderCounter : public PacketSource {
 
  private:
   void look_at(const PacketView& view) {
-    const std::uint16_t frame = view.frame_id();
+    const std::uint32_t frame = view.frame_id();
     const std::uint16_t column = view.column(0).measurement_id();
     // Frame ids wrap: half their range is "before".
-    const auto frames_on = static_cast<std::int16_t>(frame - frame_);
+    const std::uint32_t ahead = frame - frame_;
+    const std::int64_t frames_on = format_.frame_id_bits() == 16
+                                       ? std::int64_t{static_cast<std::int16_t>(ahead)}
+                                       : std::int64_t{static_cast<std::int32_t>(ahead)};
     if (any_ && (frames_on < 0 || (frames_on == 0 && column < column_))) {
       ++reorders_;
       return;
@@ -85,16 +91,34 @@ class ReorderCounter : public PacketSource {
   PacketSource& source_;
   const PacketFormat format_;
   bool any_ = false;
-  std::uint16_t frame_ = 0;
+  std::uint32_t frame_ = 0;
   std::uint16_t column_ = 0;
   std::uint64_t reorders_ = 0;
 };
 
+Json describe_recording(const std::string& file, const recording::TopicSurvey& survey) {
+  Json topics = Json::array();
+  for (const recording::TopicFlow& flow : survey.flows) {
+    topics.push_back({{"topic", flow.topic},
+                      {"type", flow.type},
+                      {"packet_bytes", flow.bytes},
+                      {"messages", flow.messages}});
+  }
+  Json metadata = Json::array();
+  for (const recording::RecordedMetadata& found : survey.metadata) metadata.push_back(found.topic);
+  return {{"capture", file},
+          {"format", recording::to_string(recording::recording_format(file))},
+          {"messages", survey.messages},
+          {"duration_s", static_cast<double>(survey.last_time - survey.first_time) * kSecondsPerNs},
+          {"topics", topics},
+          {"metadata_topics", metadata}};
+}
+
 /// Adds what can only be told with the sensor's metadata.
 void add_frames(const CaptureInput& input, Json& out) {
   const SensorInfo info = load_capture_info(input);
-  PcapSource source(input.capture, info, {source_address(input), {}});
-  ReorderCounter ordered(source, info);
+  const auto source = open_capture(input, info);
+  ReorderCounter ordered(*source, info);
   ScanReader reader(ordered, info);
   std::uint64_t frames = 0;
   double completeness = 0.0;
@@ -111,23 +135,34 @@ void add_frames(const CaptureInput& input, Json& out) {
   out["losses"] = counters.missing_packets;
   out["reorders"] = ordered.reorders();
   out["restarts"] = counters.restarts;
-  out["lidar_source"] = to_string(source.flow().source);
+  if (const auto* pcap = dynamic_cast<const PcapSource*>(source.get())) {
+    out["lidar_source"] = to_string(pcap->flow().source);
+  }
   out["packets"] = to_json(counters);
-  out["datagrams"] = to_json(source.counters());
-  out["notices"] = source.notices();
+  out["datagrams"] = source_json(*source);
+  out["notices"] = source->notices();
 }
 
 void print_info(const CaptureInput& input) {
-  const bool has_metadata = find_metadata(input).has_value();
-  const FlowSurvey survey = survey_flows(input.capture);
-  Json out = describe_capture(input.capture, survey);
+  const bool has_metadata = has_capture_info(input);
+  std::string problem;
+  Json out;
+  if (recording::is_recording(input.capture)) {
+    const recording::TopicSurvey survey = recording::survey_topics(input.capture);
+    problem = survey.problem;
+    out = describe_recording(input.capture, survey);
+  } else {
+    const FlowSurvey survey = survey_flows(input.capture);
+    problem = survey.problem;
+    out = describe_capture(input.capture, survey);
+  }
   if (has_metadata) {
     add_frames(input, out);
   } else {
     out["notices"] =
         Json::array({"No metadata beside the capture: name the sensor's with --meta "
                      "to have its frames counted."});
-    if (!survey.problem.empty()) out["notices"].push_back(survey.problem);
+    if (!problem.empty()) out["notices"].push_back(problem);
   }
   std::cout << out.dump(2) << '\n';
 }

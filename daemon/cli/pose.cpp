@@ -37,7 +37,7 @@ void print(const Json& pose) {
   fmt::print("orientation  {} (x y z w)\n", vector_text(pose["q_xyzw"], 5));
   fmt::print("velocity     {} m/s, {} rad/s\n", vector_text(pose["v_mps"], 3),
              vector_text(pose["w_radps"], 3));
-  fmt::print("scan         frame_id {}, {:.1f} % complete\n", pose["frame_id"].get<int>(),
+  fmt::print("scan         frame_id {}, {:.1f} % complete\n", pose["frame_id"].get<std::uint32_t>(),
              100.0 * pose["completeness"].get<double>());
 }
 

@@ -205,8 +205,7 @@ void end_progress(const ReplayResult& result, const ReplayCommand& command) {
 void run(const ReplayCommand& command) {
   const daemon::Config config = effective_config(command);
   const SensorInfo info = load_capture_info(command.input);
-  PcapSource source(command.input.capture, info,
-                    {source_address(command.input), pacer_for(command.rate)});
+  const auto source = open_capture(command.input, info, pacer_for(command.rate));
   std::error_code error;
   std::filesystem::create_directories(command.out, error);
   if (error) {
@@ -222,10 +221,10 @@ void run(const ReplayCommand& command) {
     return !interrupted;
   };
   std::signal(SIGINT, [](int) { interrupted = true; });
-  const ReplayResult result = run_replay(source, info, options);
+  const ReplayResult result = run_replay(*source, info, options);
   std::signal(SIGINT, SIG_DFL);
   end_progress(result, command);
-  print_notices(source.notices());
+  print_notices(source->notices());
 
   auto summary = summary_of(result, info, config);
   const Trajectories trajectories = trajectories_of(result);

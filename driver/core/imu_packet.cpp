@@ -36,7 +36,7 @@ bool crc_matches(std::span<const std::byte> packet) {
 bool parse_nmea_packet(const ImuPacketFormat& format, std::span<const std::byte> bytes,
                        std::vector<ImuSample>& samples, CrcCheck crc) {
   if (bytes.size() != format.packet_bytes) return false;
-  if (load<std::uint16_t>(bytes.data() + kPacketTypeOffset) != kImuPacketType) return false;
+  if (load<std::uint16_t>(bytes.data()) != kImuPacketType) return false;
   if (crc == CrcCheck::kRequired && !crc_matches(bytes)) return false;
   const std::byte* from = bytes.data() + kImuHeaderBytes + kImuNmeaBytes;
   for (int i = 0; i < format.measurements; ++i, from += kImuMeasurementBytes) {

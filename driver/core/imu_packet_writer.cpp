@@ -56,9 +56,9 @@ void ImuPacketWriter::write(std::span<const ImuSample> samples, std::uint16_t fr
 void ImuPacketWriter::write_nmea(std::span<const ImuSample> samples, std::uint16_t frame_id,
                                  int index, std::vector<std::byte>& out) const {
   std::byte* const packet = out.data();
-  store(packet + kPacketTypeOffset, kImuPacketType);
-  store(packet + kFrameIdOffset, frame_id);
-  store(packet + kInitIdOffset, identity_);
+  store(packet, kImuPacketType);
+  store(packet + kStandardHeader.frame_id_offset, frame_id);
+  store(packet + kStandardHeader.init_id_offset, identity_);
   std::byte* to = packet + kImuHeaderBytes + kImuNmeaBytes;
   int measurement = index * format_.measurements;
   for (const ImuSample& sample : samples) {

@@ -47,7 +47,7 @@ struct LidarScan {
   /// Allocates every image that the format's profile carries.
   explicit LidarScan(const PacketFormat& format);
 
-  std::uint16_t frame_id = 0;     ///< As on the wire (wraps at 65,535).
+  std::uint32_t frame_id = 0;     ///< As on the wire: 16 bits wide, or 32 with a FUSA header.
   std::uint64_t sequence = 0;     ///< Frame id unwrapped since the assembler started, never falls.
   bool sensor_restarted = false;  ///< First scan after the sensor restarted (new init id).
   Image<std::uint32_t> range_mm;  ///< 0 = no return.

@@ -33,6 +33,7 @@ std::string to_metadata_json(const SensorInfo& info) {
       {"columns_per_frame", info.columns_per_frame},
       {"columns_per_packet", info.columns_per_packet},
       {"pixels_per_column", info.pixels_per_column},
+      {"header_type", info.header == PacketHeader::kFusa ? "FUSA" : "STANDARD"},
       {"fps", info.scan_rate_hz},
       {"column_window", {info.column_window.first, info.column_window.second}},
       {"pixel_shift_by_row", info.pixel_shift_by_row}};

@@ -77,7 +77,7 @@ ColumnWindow::ColumnWindow(const SensorInfo& info)
   }
 }
 
-void OpenScan::start(std::uint16_t frame_id, std::int64_t unwrapped_id, SensorTime time) {
+void OpenScan::start(std::uint32_t frame_id, std::int64_t unwrapped_id, SensorTime time) {
   scan.frame_id = frame_id;
   scan.sequence = static_cast<std::uint64_t>(unwrapped_id);
   scan.sensor_restarted = false;

@@ -28,7 +28,7 @@ struct OpenScan {
   explicit OpenScan(const PacketFormat& format)
       : scan(format), arrived(static_cast<std::size_t>(format.columns_per_frame)) {}
 
-  void start(std::uint16_t frame_id, std::int64_t unwrapped_id, SensorTime time);
+  void start(std::uint32_t frame_id, std::int64_t unwrapped_id, SensorTime time);
   /// Zeroes what never came or was invalid, and fills in completeness and times.
   void finish(const ColumnWindow& window, std::int64_t scan_period_ns);
 

@@ -23,6 +23,8 @@ PacketFormat::PacketFormat(const SensorInfo& info)
       columns_per_frame(info.columns_per_frame),
       columns_per_packet(info.columns_per_packet),
       pixels_per_column(info.pixels_per_column),
+      header(info.profile == LidarProfile::kFusaRng15Rfl8Nir8Dual ? PacketHeader::kFusa
+                                                                  : info.header),
       imu_packet_bytes(ImuPacketFormat(info).packet_bytes) {
   const auto bytes = [](int count) { return static_cast<std::size_t>(count); };
   column_bytes = bytes(layout->column_header_bytes) +

@@ -50,12 +50,15 @@ struct PacketFormat {
   int columns_per_frame;
   int columns_per_packet;
   int pixels_per_column;
+  PacketHeader header;
   std::size_t column_bytes;
   std::size_t packet_bytes;
   /// Of the sensor's IMU packets, which older firmware marks by nothing but their size.
   std::size_t imu_packet_bytes;
 
   [[nodiscard]] bool legacy() const { return layout->profile == LidarProfile::kLegacy; }
+  /// Width of the frame id on the wire.
+  [[nodiscard]] int frame_id_bits() const { return header == PacketHeader::kFusa ? 32 : 16; }
   [[nodiscard]] bool has(Channel c) const { return layout->field(c).present(); }
 };
 

@@ -28,10 +28,21 @@ TEST(PacketFormat, SizesAreThoseOfRealSensors) {
   EXPECT_EQ(packet_bytes(LidarProfile::kRng15Rfl8Nir8, 128), 8448U);
 }
 
+// Rows of the manual's table of sizes: pixel bytes by profile, at 64 beams.
+TEST(PacketFormat, SizesOfAllProfilesAreTheManuals) {
+  EXPECT_EQ(packet_bytes(LidarProfile::kRng15Rfl8Win8, 64), 4352U);
+  EXPECT_EQ(packet_bytes(LidarProfile::kRng15Rfl8Nir8Dual, 64), 8448U);
+  EXPECT_EQ(packet_bytes(LidarProfile::kFusaRng15Rfl8Nir8Dual, 64), 8448U);
+  EXPECT_EQ(packet_bytes(LidarProfile::kFiveWordPixel, 64), 20736U);
+  EXPECT_EQ(packet_bytes(LidarProfile::kRng15Rfl8Nir8Zone16, 64), 8448U);
+  EXPECT_EQ(packet_bytes(LidarProfile::kRng19Rfl8Sig16Nir16Zone16, 64), 12544U);
+  EXPECT_EQ(packet_bytes(LidarProfile::kRng19Rfl8Sig16Zone16Dual, 64), 16640U);
+  EXPECT_EQ(packet_bytes(LidarProfile::kRng19Rfl8Sig16Nir16Rgb16, 64), 16640U);
+  EXPECT_EQ(packet_bytes(LidarProfile::kRng19Rfl8Sig16Nir16Rgb16Dual, 64), 20736U);
+}
+
 TEST(PacketFormat, EveryProfileHasItsOwnRow) {
-  for (const auto profile :
-       {LidarProfile::kLegacy, LidarProfile::kRng19Rfl8Sig16Nir16,
-        LidarProfile::kRng19Rfl8Sig16Nir16Dual, LidarProfile::kRng15Rfl8Nir8}) {
+  for (const auto profile : lidar_profiles()) {
     EXPECT_EQ(profile_layout(profile).profile, profile);
   }
 }

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "driver/core/time.hpp"
@@ -35,6 +36,8 @@ class PacketSource {
   virtual void stop() = 0;
   /// Datagrams that the kernel dropped before they could be read, since start; 0 in replay.
   [[nodiscard]] virtual std::uint64_t kernel_drops() const { return 0; }
+  /// What a user should know of the source, a sentence each; more may come at its end.
+  [[nodiscard]] virtual std::vector<std::string> notices() const { return {}; }
   /// A sentence on what broke after kError; empty otherwise.
   [[nodiscard]] virtual const char* error() const { return ""; }
 };

@@ -43,6 +43,20 @@ class ColumnView {
   const std::byte* data_;
 };
 
+/// What a lidar packet's header says of the sensor's state (sensor manual, "alert flags").
+struct PacketHealth {
+  std::uint8_t alert_flags = 0;          ///< Bit 7: any alert is active.
+  std::uint8_t thermal_countdown_s = 0;  ///< Until it shuts down, while that is imminent.
+  std::uint8_t shot_limiting_countdown_s = 0;
+  std::uint8_t thermal_state = 0;        ///< 0 normal, 1 shutdown imminent.
+  std::uint8_t shot_limiting_state = 0;  ///< 0 normal, 1 imminent, 2 to 9 levels of reduction.
+};
+
+/// The header that a packet must have for its ids to be those of the sensor; null when both or
+/// neither fit, or the ids are not known (0).
+std::optional<PacketHeader> recognise_header(std::span<const std::byte> packet,
+                                             std::uint64_t serial_number, std::uint32_t init_id);
+
 /// A lidar packet whose size has been checked against the format: no accessor reads outside.
 /// Non-owning; valid while the bytes are. Thread-compatible, no allocation, never throws.
 class PacketView {
@@ -52,11 +66,17 @@ class PacketView {
                                          std::span<const std::byte> bytes,
                                          PacketError* error = nullptr);
 
-  /// Frame id, 16 bits wide: of the header, or of the first column for legacy packets.
-  [[nodiscard]] std::uint16_t frame_id() const;
+  /// Frame id, format.frame_id_bits() wide: of the header, or of the first column for legacy
+  /// packets.
+  [[nodiscard]] std::uint32_t frame_id() const;
   /// Initialization id (24 bits) and serial number (40 bits); 0 for legacy packets.
   [[nodiscard]] std::uint32_t init_id() const;
   [[nodiscard]] std::uint64_t serial_number() const;
+  /// Alert and limit fields; all zero for legacy packets.
+  [[nodiscard]] PacketHealth health() const;
+  /// Whether the CRC-64 in the footer is that of the packet; never for legacy packets, which have
+  /// none. Reads every byte.
+  [[nodiscard]] bool crc_matches() const;
   /// Column `index` of this packet, 0 <= index < columns_per_packet.
   [[nodiscard]] ColumnView column(int index) const;
   [[nodiscard]] int column_count() const { return format_->columns_per_packet; }

@@ -121,10 +121,9 @@ TEST(PacketView, TimesBeyondTheClocksRangeAreCut) {
 
 TEST(PacketWriter, WritesWhatPacketViewReads) {
   std::mt19937 random(1);
-  for (const auto profile :
-       {LidarProfile::kLegacy, LidarProfile::kRng19Rfl8Sig16Nir16,
-        LidarProfile::kRng19Rfl8Sig16Nir16Dual, LidarProfile::kRng15Rfl8Nir8}) {
+  for (const auto profile : lidar_profiles()) {
     const SensorInfo info = make_sensor(profile, 16, 512);
+    SCOPED_TRACE(to_string(profile));
     const PacketFormat format(info);
     const LidarScan scan = random_scan(info, 54'321, random);
     const Bytes packet = encode(info, scan)[5];
@@ -139,7 +138,63 @@ TEST(PacketWriter, WritesWhatPacketViewReads) {
     EXPECT_EQ(column.status(), scan.column_status[83]);
     EXPECT_EQ(column.value(Channel::kRange, 9), scan.range_mm(9, 83));
     EXPECT_EQ(column.value(Channel::kReflectivity, 9), scan.reflectivity(9, 83));
-    EXPECT_EQ(column.value(Channel::kNearIr, 9), scan.near_ir(9, 83));
+    const auto expect_same = [&](Channel channel, const auto& image) {
+      EXPECT_EQ(column.value(channel, 9), image.empty() ? 0U : image(9, 83));
+    };
+    expect_same(Channel::kSignal, scan.signal);
+    expect_same(Channel::kNearIr, scan.near_ir);
+    expect_same(Channel::kRange2, scan.range2_mm);
+    expect_same(Channel::kSignal2, scan.signal2);
+    expect_same(Channel::kReflectivity2, scan.reflectivity2);
+    EXPECT_EQ(view->crc_matches(), !format.legacy());
+  }
+}
+
+TEST(PacketView, ADamagedPacketFailsItsCrc) {
+  std::mt19937 random(2);
+  const SensorInfo info = make_sensor(LidarProfile::kRng15Rfl8Nir8, 16, 512);
+  const PacketFormat format(info);
+  Bytes packet = encode(info, random_scan(info, 7, random))[3];
+  EXPECT_TRUE(PacketView::parse(format, packet)->crc_matches());
+  packet[100] ^= std::byte{0x10};
+  EXPECT_FALSE(PacketView::parse(format, packet)->crc_matches());
+}
+
+// Built byte by byte from the manual.
+TEST(PacketView, FusaHeaderFieldsAreWhereTheManualPutsThem) {
+  const PacketFormat format(make_sensor(LidarProfile::kFusaRng15Rfl8Nir8Dual, 128, 1024));
+  Bytes packet(16640);
+  store<std::uint64_t>(packet.data() + 11, 992'137'000'142U);
+  store<std::uint32_t>(packet.data() + 1, 0xFE'DCBAU);
+  store<std::uint8_t>(packet.data(), 1);
+  store<std::uint32_t>(packet.data() + 4, 3'000'000'000U);
+  store<std::uint8_t>(packet.data() + 8, 0x83);
+  store<std::uint32_t>(packet.data() + 16, 0xF1F1'0705U);
+  const auto view = PacketView::parse(format, packet);
+  ASSERT_TRUE(view);
+  EXPECT_EQ(view->frame_id(), 3'000'000'000U);
+  EXPECT_EQ(view->init_id(), 0xFE'DCBAU);
+  EXPECT_EQ(view->serial_number(), 992'137'000'142U);
+  const PacketHealth health = view->health();
+  EXPECT_EQ(health.alert_flags, 0x83);
+  EXPECT_EQ(health.thermal_countdown_s, 5);
+  EXPECT_EQ(health.shot_limiting_countdown_s, 7);
+  EXPECT_EQ(health.thermal_state, 1);
+  EXPECT_EQ(health.shot_limiting_state, 1);
+}
+
+TEST(PacketView, TheHeaderIsRecognisedByTheSensorsIds) {
+  std::mt19937 random(3);
+  SensorInfo info = make_sensor(LidarProfile::kRng19Rfl8Sig16Nir16, 16, 512);
+  const std::uint64_t serial = std::stoull(info.serial_number);
+  const LidarScan scan = random_scan(info, 77, random);
+  for (const PacketHeader header : {PacketHeader::kStandard, PacketHeader::kFusa}) {
+    info.header = header;
+    const Bytes packet = encode(info, scan)[0];
+    EXPECT_EQ(recognise_header(packet, serial, 0), header);
+    EXPECT_EQ(recognise_header(packet, 0, info.init_id), header);
+    EXPECT_EQ(recognise_header(packet, serial + 1, 0), std::nullopt);
+    EXPECT_EQ(recognise_header(packet, 0, 0), std::nullopt);
   }
 }
 

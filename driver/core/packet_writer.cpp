@@ -6,6 +6,7 @@
 #include <charconv>
 
 #include "driver/core/bytes.hpp"
+#include "driver/core/crc64.hpp"
 #include "driver/core/profile_table.hpp"
 
 namespace glint {
@@ -47,7 +48,7 @@ void write_column(const PacketFormat& format, const LidarScan& scan, int m, std:
   store(column + kMeasurementIdOffset, static_cast<std::uint16_t>(m));
   const std::uint32_t status = scan.column_status[index];
   if (format.legacy()) {
-    store(column + kLegacyFrameIdOffset, scan.frame_id);
+    store(column + kLegacyFrameIdOffset, static_cast<std::uint16_t>(scan.frame_id));
     const auto ticks = kEncoderTicksPerTurn / static_cast<std::uint32_t>(format.columns_per_frame);
     store(column + kLegacyEncoderOffset, static_cast<std::uint32_t>(m) * ticks);
     store(column + format.column_bytes - sizeof status, status);
@@ -73,15 +74,29 @@ int PacketWriter::packets_per_scan() const {
 void PacketWriter::write(const LidarScan& scan, int index, std::vector<std::byte>& out) const {
   out.assign(format_.packet_bytes, std::byte{0});
   std::byte* to = out.data();
-  if (!format_.legacy()) {
-    store(to + kPacketTypeOffset, kLidarPacketType);
-    store(to + kFrameIdOffset, scan.frame_id);
-    // 24 bits of init id, then 40 of the serial number: one word together.
-    store(to + kInitIdOffset, serial_number_ << 24U | init_id_);
-  }
+  if (!format_.legacy()) write_header(scan.frame_id, to);
   to += format_.layout->packet_header_bytes;
   for (int i = 0; i < format_.columns_per_packet; ++i, to += format_.column_bytes) {
     write_column(format_, scan, index * format_.columns_per_packet + i, to);
+  }
+  if (format_.legacy()) return;
+  const std::size_t covered = out.size() - kPacketCrcBytes;
+  store(out.data() + covered, crc64(std::span(out).first(covered)));
+}
+
+void PacketWriter::write_header(std::uint32_t frame_id, std::byte* to) const {
+  const HeaderLayout& layout = header_layout(format_.header);
+  // Words first: what is narrower lies over their unused bits.
+  store(to + layout.serial_number_offset, serial_number_);
+  const std::byte after_init_id = to[layout.init_id_offset + 3];
+  store(to + layout.init_id_offset, init_id_);
+  to[layout.init_id_offset + 3] = after_init_id;
+  if (format_.header == PacketHeader::kFusa) {
+    store(to + layout.frame_id_offset, frame_id);
+    store(to, static_cast<std::uint8_t>(kLidarPacketType));
+  } else {
+    store(to + layout.frame_id_offset, static_cast<std::uint16_t>(frame_id));
+    store(to, kLidarPacketType);
   }
 }
 

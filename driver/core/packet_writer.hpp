@@ -26,6 +26,8 @@ class PacketWriter {
   void write(const LidarScan& scan, int index, std::vector<std::byte>& out) const;
 
  private:
+  void write_header(std::uint32_t frame_id, std::byte* to) const;
+
   PacketFormat format_;
   std::uint32_t init_id_;
   std::uint64_t serial_number_;

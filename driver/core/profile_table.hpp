@@ -8,13 +8,28 @@
 
 namespace glint {
 
-// Offsets inside the packet header, the column header and the column footer; see the sensor manual,
-// "lidar data packet format".
-constexpr int kPacketTypeOffset = 0;
-constexpr int kFrameIdOffset = 2;
-constexpr int kInitIdOffset = 4;        // 24 bits
-constexpr int kSerialNumberOffset = 7;  // 40 bits
+/// Offsets inside the packet header; see the sensor manual, "lidar data packet format".
+struct HeaderLayout {
+  int type_bits;
+  int frame_id_offset;
+  int init_id_offset;        // 24 bits
+  int serial_number_offset;  // 40 bits
+  int alert_flags_offset;
+};
+inline constexpr HeaderLayout kStandardHeader{16, 2, 4, 7, 12};
+inline constexpr HeaderLayout kFusaHeader{8, 4, 1, 11, 8};
+constexpr const HeaderLayout& header_layout(PacketHeader header) {
+  return header == PacketHeader::kFusa ? kFusaHeader : kStandardHeader;
+}
 constexpr std::uint16_t kLidarPacketType = 1;
+// The same in both.
+constexpr int kThermalCountdownOffset = 16;
+constexpr int kShotLimitingCountdownOffset = 17;
+constexpr int kThermalStateOffset = 18;  // low 4 bits
+constexpr int kShotLimitingStateOffset = 19;
+constexpr int kPacketCrcBytes = 8;  // at the very end
+
+// Offsets inside the column header and footer.
 constexpr int kColumnTimeOffset = 0;
 constexpr int kMeasurementIdOffset = 8;
 constexpr int kColumnStatusOffset = 10;  // 16 bits; legacy columns carry 32 bits in their footer
@@ -22,10 +37,22 @@ constexpr int kLegacyFrameIdOffset = 10;
 constexpr int kLegacyEncoderOffset = 12;
 constexpr std::uint32_t kEncoderTicksPerTurn = 90112;
 
+/// A row for packets with header and footer.
+constexpr ProfileLayout row(LidarProfile profile, int pixel_bytes,
+                            std::array<PixelField, kChannelCount> fields) {
+  return {.profile = profile,
+          .pixel_bytes = pixel_bytes,
+          .packet_header_bytes = 32,
+          .column_header_bytes = 12,
+          .column_footer_bytes = 0,
+          .packet_footer_bytes = 32,
+          .fields = fields};
+}
+
 /// Every profile, in the order of LidarProfile. Fields are in the order of Channel: range, signal,
 /// reflectivity, near-IR, and range, signal, reflectivity of the second return. All start at a
-/// byte.
-inline constexpr std::array<ProfileLayout, 4> kProfileTable{{
+/// byte. Flags, window and zone bits, and colours are left in the packet.
+inline constexpr std::array<ProfileLayout, 13> kProfileTable{{
     {.profile = LidarProfile::kLegacy,
      .pixel_bytes = 12,
      .packet_header_bytes = 0,
@@ -33,27 +60,28 @@ inline constexpr std::array<ProfileLayout, 4> kProfileTable{{
      .column_footer_bytes = 4,
      .packet_footer_bytes = 0,
      .fields = {{{0, 20}, {48, 16}, {32, 16}, {64, 16}, {}, {}, {}}}},
-    {.profile = LidarProfile::kRng19Rfl8Sig16Nir16,
-     .pixel_bytes = 12,
-     .packet_header_bytes = 32,
-     .column_header_bytes = 12,
-     .column_footer_bytes = 0,
-     .packet_footer_bytes = 32,
-     .fields = {{{0, 19}, {48, 16}, {32, 8}, {64, 16}, {}, {}, {}}}},
-    {.profile = LidarProfile::kRng19Rfl8Sig16Nir16Dual,
-     .pixel_bytes = 16,
-     .packet_header_bytes = 32,
-     .column_header_bytes = 12,
-     .column_footer_bytes = 0,
-     .packet_footer_bytes = 32,
-     .fields = {{{0, 19}, {64, 16}, {24, 8}, {96, 16}, {32, 19}, {80, 16}, {56, 8}}}},
-    {.profile = LidarProfile::kRng15Rfl8Nir8,
-     .pixel_bytes = 4,
-     .packet_header_bytes = 32,
-     .column_header_bytes = 12,
-     .column_footer_bytes = 0,
-     .packet_footer_bytes = 32,
-     .fields = {{{0, 15, 8}, {}, {16, 8}, {24, 8, 16}, {}, {}, {}}}},
+    row(LidarProfile::kRng19Rfl8Sig16Nir16, 12,
+        {{{0, 19}, {48, 16}, {32, 8}, {64, 16}, {}, {}, {}}}),
+    row(LidarProfile::kRng19Rfl8Sig16Nir16Dual, 16,
+        {{{0, 19}, {64, 16}, {24, 8}, {96, 16}, {32, 19}, {80, 16}, {56, 8}}}),
+    row(LidarProfile::kRng15Rfl8Nir8, 4, {{{0, 15, 8}, {}, {16, 8}, {24, 8, 16}, {}, {}, {}}}),
+    row(LidarProfile::kRng15Rfl8Win8, 4, {{{0, 15, 8}, {}, {16, 8}, {}, {}, {}, {}}}),
+    row(LidarProfile::kRng15Rfl8Nir8Dual, 8,
+        {{{0, 15, 8}, {}, {16, 8}, {24, 8, 16}, {32, 15, 8}, {}, {48, 8}}}),
+    row(LidarProfile::kFusaRng15Rfl8Nir8Dual, 8,
+        {{{0, 15, 8}, {}, {16, 8}, {24, 8, 16}, {32, 15, 8}, {}, {48, 8}}}),
+    row(LidarProfile::kFiveWordPixel, 20,
+        {{{0, 19}, {64, 16}, {24, 8}, {96, 16}, {32, 19}, {80, 16}, {56, 8}}}),
+    row(LidarProfile::kRng15Rfl8Nir8Zone16, 8,
+        {{{0, 15, 8}, {}, {16, 8}, {24, 8, 16}, {}, {}, {}}}),
+    row(LidarProfile::kRng19Rfl8Sig16Nir16Zone16, 12,
+        {{{0, 19}, {48, 16}, {32, 8}, {64, 16}, {}, {}, {}}}),
+    row(LidarProfile::kRng19Rfl8Sig16Zone16Dual, 16,
+        {{{0, 19}, {64, 16}, {24, 8}, {}, {32, 19}, {80, 16}, {56, 8}}}),
+    row(LidarProfile::kRng19Rfl8Sig16Nir16Rgb16, 16,
+        {{{0, 19}, {32, 16}, {24, 8}, {48, 16}, {}, {}, {}}}),
+    row(LidarProfile::kRng19Rfl8Sig16Nir16Rgb16Dual, 20,
+        {{{0, 19}, {64, 16}, {24, 8}, {96, 16}, {32, 19}, {80, 16}, {56, 8}}}),
 }};
 
 }  // namespace glint

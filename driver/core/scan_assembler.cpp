@@ -22,9 +22,11 @@ constexpr std::size_t kMaxReadyScans = kMaxOpenScans + 1;
 // A further buffer is in the caller's hands.
 constexpr std::size_t kBuffers = kMaxOpenScans + kMaxReadyScans + 1;
 
-// Difference of two frame ids that wrap at 16 bits; half the range tells older from newer.
-int frame_difference(std::uint16_t a, std::uint16_t b) {
-  return static_cast<std::int16_t>(static_cast<std::uint16_t>(a - b));
+// Difference of two frame ids that wrap at so many bits; half the range tells older from newer.
+std::int64_t frame_difference(std::uint32_t a, std::uint32_t b, int bits) {
+  const std::uint32_t difference = a - b;
+  return bits == 16 ? std::int64_t{static_cast<std::int16_t>(difference)}
+                    : std::int64_t{static_cast<std::int32_t>(difference)};
 }
 
 // Time of the first valid column; of the first one when none is.
@@ -50,13 +52,14 @@ struct ScanAssembler::Impl {
   void flush();
   const LidarScan* next();
 
+  void prove_header(std::span<const std::byte> datagram);
   PacketError refuse(PacketError why);
   bool check_init_id(std::uint32_t id);
   void restart();
   void discard(std::uint64_t& counter);
   bool any_column_expected(const PacketView& packet);
-  OpenScan* find_or_open(std::uint16_t frame_id, SensorTime time);
-  std::int64_t unwrap(std::uint16_t frame_id) const;
+  OpenScan* find_or_open(std::uint32_t frame_id, SensorTime time);
+  std::int64_t unwrap(std::uint32_t frame_id) const;
   bool leaps(std::int64_t sequence, SensorTime time) const;
   void place(const PacketView& packet, OpenScan& scan);
   bool fits_whole(const PacketView& packet, const OpenScan& scan) const;
@@ -68,13 +71,15 @@ struct ScanAssembler::Impl {
   void count_missing(const OpenScan& scan);
   void take_back();
 
-  const PacketFormat format;
+  PacketFormat format;  // constant but for the header, which packets may prove
   const ColumnWindow window;
   const DecodeColumns decode;
   const AssemblerOptions options;
   const std::int64_t scan_period_ns;
   const std::int64_t timeout_ns;
   const std::uint64_t serial_number;  // 0: not known
+  const std::uint32_t metadata_init_id;
+  bool header_proved = false;
   const std::uint64_t packets_per_scan;
   AssemblerCounters counters;
 
@@ -88,7 +93,7 @@ struct ScanAssembler::Impl {
   bool tell_restart = false;  // the next scan to leave is the first after a restart
   std::uint32_t init_id = 0;
   std::uint32_t former_init_id = 0;
-  std::uint16_t newest_frame_id = 0;   // of the newest scan ever opened, and its
+  std::uint32_t newest_frame_id = 0;   // of the newest scan ever opened, and its
   std::int64_t newest_sequence = -1;   // unwrapped id,
   SensorTime newest_time;              // and time
   std::int64_t left_sequence = -1;     // of the newest scan that left
@@ -103,6 +108,7 @@ ScanAssembler::Impl::Impl(const SensorInfo& info, AssemblerOptions given)
       scan_period_ns(info.scan_period_ns()),
       timeout_ns(std::llround(given.timeout_periods * static_cast<double>(scan_period_ns))),
       serial_number(parse_serial_number(info.serial_number)),
+      metadata_init_id(info.init_id),
       packets_per_scan(static_cast<std::uint64_t>((window.count + info.columns_per_packet - 1) /
                                                   info.columns_per_packet)) {
   buffers.reserve(kBuffers);
@@ -114,6 +120,7 @@ ScanAssembler::Impl::Impl(const SensorInfo& info, AssemblerOptions given)
 
 PacketError ScanAssembler::Impl::push(std::span<const std::byte> datagram) {
   take_back();
+  prove_header(datagram);
   PacketError error = PacketError::kNone;
   const auto packet = PacketView::parse(format, datagram, &error);
   if (!packet) return refuse(error);
@@ -134,6 +141,15 @@ PacketError ScanAssembler::Impl::push(std::span<const std::byte> datagram) {
   }
   let_finished_leave();
   return PacketError::kNone;
+}
+
+// The manual gives two layouts for one profile, so the sensor's ids decide, where they are known.
+void ScanAssembler::Impl::prove_header(std::span<const std::byte> datagram) {
+  if (header_proved || format.legacy() || datagram.size() != format.packet_bytes) return;
+  const auto header = recognise_header(datagram, serial_number, metadata_init_id);
+  if (!header) return;
+  format.header = *header;
+  header_proved = true;
 }
 
 PacketError ScanAssembler::Impl::refuse(PacketError why) {
@@ -199,7 +215,7 @@ bool ScanAssembler::Impl::any_column_expected(const PacketView& packet) {
 }
 
 // The open scan of this frame id, opened if need be; null when its packets are to be discarded.
-OpenScan* ScanAssembler::Impl::find_or_open(std::uint16_t frame_id, SensorTime time) {
+OpenScan* ScanAssembler::Impl::find_or_open(std::uint32_t frame_id, SensorTime time) {
   const std::int64_t sequence = unwrap(frame_id);
   const auto at = std::ranges::lower_bound(open, sequence, {}, &OpenScan::sequence);
   if (at != open.end() && (*at)->sequence == sequence) return *at;
@@ -230,8 +246,9 @@ OpenScan* ScanAssembler::Impl::find_or_open(std::uint16_t frame_id, SensorTime t
   return scan;
 }
 
-std::int64_t ScanAssembler::Impl::unwrap(std::uint16_t frame_id) const {
-  if (started) return newest_sequence + frame_difference(frame_id, newest_frame_id);
+std::int64_t ScanAssembler::Impl::unwrap(std::uint32_t frame_id) const {
+  if (started)
+    return newest_sequence + frame_difference(frame_id, newest_frame_id, format.frame_id_bits());
   return newest_sequence < 0 ? frame_id : newest_sequence + 1;
 }
 

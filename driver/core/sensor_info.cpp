@@ -19,13 +19,25 @@
 namespace glint {
 namespace {
 
-constexpr std::array kProfileNames{
-    std::pair{LidarProfile::kLegacy, std::string_view("LEGACY")},
-    std::pair{LidarProfile::kRng19Rfl8Sig16Nir16, std::string_view("RNG19_RFL8_SIG16_NIR16")},
-    std::pair{LidarProfile::kRng19Rfl8Sig16Nir16Dual,
-              std::string_view("RNG19_RFL8_SIG16_NIR16_DUAL")},
-    std::pair{LidarProfile::kRng15Rfl8Nir8, std::string_view("RNG15_RFL8_NIR8")},
+struct ProfileName {
+  LidarProfile profile;
+  std::string_view name;
 };
+constexpr std::array<ProfileName, 13> kProfileNames{{
+    {LidarProfile::kLegacy, "LEGACY"},
+    {LidarProfile::kRng19Rfl8Sig16Nir16, "RNG19_RFL8_SIG16_NIR16"},
+    {LidarProfile::kRng19Rfl8Sig16Nir16Dual, "RNG19_RFL8_SIG16_NIR16_DUAL"},
+    {LidarProfile::kRng15Rfl8Nir8, "RNG15_RFL8_NIR8"},
+    {LidarProfile::kRng15Rfl8Win8, "RNG15_RFL8_WIN8"},
+    {LidarProfile::kRng15Rfl8Nir8Dual, "RNG15_RFL8_NIR8_DUAL"},
+    {LidarProfile::kFusaRng15Rfl8Nir8Dual, "FUSA_RNG15_RFL8_NIR8_DUAL"},
+    {LidarProfile::kFiveWordPixel, "FIVE_WORD_PIXEL"},
+    {LidarProfile::kRng15Rfl8Nir8Zone16, "RNG15_RFL8_NIR8_ZONE16"},
+    {LidarProfile::kRng19Rfl8Sig16Nir16Zone16, "RNG19_RFL8_SIG16_NIR16_ZONE16"},
+    {LidarProfile::kRng19Rfl8Sig16Zone16Dual, "RNG19_RFL8_SIG16_ZONE16_DUAL"},
+    {LidarProfile::kRng19Rfl8Sig16Nir16Rgb16, "RNG19_RFL8_SIG16_NIR16_RGB16"},
+    {LidarProfile::kRng19Rfl8Sig16Nir16Rgb16Dual, "RNG19_RFL8_SIG16_NIR16_RGB16_DUAL"},
+}};
 
 constexpr std::array kImuProfileNames{
     std::pair{ImuProfile::kLegacy, std::string_view("LEGACY")},
@@ -129,20 +141,34 @@ void read_beams(const Groups& groups, SensorInfo& info) {
   info.pixels_per_column = static_cast<int>(rows);
 }
 
+PacketHeader read_header(const MetadataGroup& format, LidarProfile profile) {
+  const std::string type = format.text("header_type").value_or("STANDARD");
+  if (type != "STANDARD" && type != "FUSA") {
+    format.fail("header_type", fmt::format("is {}; sensors have STANDARD or FUSA", type));
+  }
+  const bool fusa = type == "FUSA" || profile == LidarProfile::kFusaRng15Rfl8Nir8Dual;
+  return fusa ? PacketHeader::kFusa : PacketHeader::kStandard;
+}
+
 void read_profile(const MetadataGroup& format, SensorInfo& info) {
   const std::string name = format.text("udp_profile_lidar").value_or("LEGACY");
+  if (name == "OFF") {
+    format.fail("udp_profile_lidar",
+                "is OFF: the sensor sends no lidar packets; set it to RNG19_RFL8_SIG16_NIR16");
+  }
   const auto* known = std::find_if(kProfileNames.begin(), kProfileNames.end(),
-                                   [&](const auto& entry) { return entry.second == name; });
+                                   [&](const auto& entry) { return entry.name == name; });
   if (known == kProfileNames.end()) {
     std::vector<std::string_view> names;
     names.reserve(kProfileNames.size());
-    for (const auto& entry : kProfileNames) names.push_back(entry.second);
+    for (const auto& entry : kProfileNames) names.push_back(entry.name);
     format.fail(
         "udp_profile_lidar",
         fmt::format("is {}, a profile this version does not read; set the sensor to one of {}",
                     name, fmt::join(names, ", ")));
   }
-  info.profile = known->first;
+  info.profile = known->profile;
+  info.header = read_header(format, info.profile);
 }
 
 // The IMU is no reason to refuse a sensor, so an unknown profile only warns.
@@ -281,8 +307,17 @@ void check_azimuth_window(const MetadataGroup& config, SensorInfo& info) {
 
 }  // namespace
 
+std::span<const LidarProfile> lidar_profiles() {
+  static constexpr auto kAll = [] {
+    std::array<LidarProfile, kProfileNames.size()> all{};
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = kProfileNames[i].profile;
+    return all;
+  }();
+  return kAll;
+}
+
 std::string_view to_string(LidarProfile profile) {
-  return kProfileNames[static_cast<std::size_t>(profile)].second;
+  return kProfileNames[static_cast<std::size_t>(profile)].name;
 }
 
 std::string_view to_string(ImuProfile profile) {

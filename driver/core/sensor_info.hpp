@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -20,6 +21,24 @@ enum class LidarProfile {
   kRng19Rfl8Sig16Nir16,
   kRng19Rfl8Sig16Nir16Dual,
   kRng15Rfl8Nir8,
+  kRng15Rfl8Win8,
+  kRng15Rfl8Nir8Dual,
+  kFusaRng15Rfl8Nir8Dual,
+  kFiveWordPixel,
+  kRng15Rfl8Nir8Zone16,
+  kRng19Rfl8Sig16Nir16Zone16,
+  kRng19Rfl8Sig16Zone16Dual,
+  kRng19Rfl8Sig16Nir16Rgb16,
+  kRng19Rfl8Sig16Nir16Rgb16Dual,
+};
+
+/// All of them, in that order.
+std::span<const LidarProfile> lidar_profiles();
+
+/// Where the header of lidar packets, which legacy ones lack, has its fields.
+enum class PacketHeader {
+  kStandard,  ///< 16-bit type and frame id.
+  kFusa,      ///< 8-bit type, 32-bit frame id, and ids elsewhere.
 };
 
 /// The profile's name as sensors spell it, e.g. "RNG19_RFL8_SIG16_NIR16".
@@ -44,10 +63,12 @@ struct SensorInfo {
   std::uint32_t init_id = 0;  ///< Initialization id; 0 when unknown.
 
   LidarProfile profile = LidarProfile::kLegacy;
-  int columns_per_frame = 0;   ///< W: 512, 1024, 2048, ...
-  int columns_per_packet = 0;  ///< Usually 16.
-  int pixels_per_column = 0;   ///< H: beams.
-  double scan_rate_hz = 10.0;  ///< From lidar_mode.
+  PacketHeader header =
+      PacketHeader::kStandard;  ///< As metadata has it; packets may prove it wrong.
+  int columns_per_frame = 0;    ///< W: 512, 1024, 2048, ...
+  int columns_per_packet = 0;   ///< Usually 16.
+  int pixels_per_column = 0;    ///< H: beams.
+  double scan_rate_hz = 10.0;   ///< From lidar_mode.
   /// First and last column of the azimuth window (measurement ids); first > last when it wraps.
   std::pair<int, int> column_window{0, 0};
   /// Columns by which row r of a staggered scan is shifted right to destagger it; H entries.

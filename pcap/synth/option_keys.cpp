@@ -29,15 +29,12 @@ Number number(std::string_view name, const std::string& text) {
                                 std::is_integral_v<Number> ? "whole number in range" : "number"));
 }
 
-constexpr std::array kProfiles = {LidarProfile::kLegacy, LidarProfile::kRng19Rfl8Sig16Nir16,
-                                  LidarProfile::kRng19Rfl8Sig16Nir16Dual,
-                                  LidarProfile::kRng15Rfl8Nir8};
 constexpr std::array kImuProfiles = {ImuProfile::kLegacy, ImuProfile::kAccel32Gyro32Nmea};
 
-template <class Profile, std::size_t kCount>
-Profile profile_named(const std::array<Profile, kCount>& profiles, const std::string& text) {
+template <class Profiles>
+auto profile_named(const Profiles& profiles, const std::string& text) {
   std::vector<std::string_view> names;
-  for (const Profile profile : profiles) {
+  for (const auto profile : profiles) {
     if (text == to_string(profile)) return profile;
     names.push_back(to_string(profile));
   }
@@ -55,12 +52,10 @@ Profile profile_named(const std::array<Profile, kCount>& profiles, const std::st
 const std::array kKeys = {
     GLINT_NUMBER("seconds", "How long, s", double, seconds),
     GLINT_NUMBER("seed", "Layout, way, sensor and noise follow from it", std::uint64_t, seed),
-    OptionKey{"profile",
-              "What lidar packets hold: LEGACY, RNG19_RFL8_SIG16_NIR16, ..._DUAL or "
-              "RNG15_RFL8_NIR8",
+    OptionKey{"profile", "What lidar packets hold: any profile that glint reads, e.g. LEGACY",
               false, [](const Options& o) { return std::string(to_string(o.sensor.profile)); },
               [](Options& o, const std::string& text) {
-                o.sensor.profile = profile_named(kProfiles, text);
+                o.sensor.profile = profile_named(lidar_profiles(), text);
               }},
     OptionKey{"imu-profile", "What IMU packets hold: LEGACY or ACCEL32_GYRO32_NMEA", false,
               [](const Options& o) { return std::string(to_string(o.sensor.imu_profile)); },

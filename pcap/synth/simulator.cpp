@@ -131,7 +131,7 @@ bool Simulator::next(LidarScan& scan, ScanTruth& truth) {
   });
 
   truth.scan = next_scan_;
-  truth.frame_id = scan.frame_id;
+  truth.frame_id = static_cast<std::uint16_t>(scan.frame_id);
   truth.start = scan.column_time.front();
   truth.T_world_sensor = true_pose(truth.start);
   set_moving(scan, casting.moving, truth);

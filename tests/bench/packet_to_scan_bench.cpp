@@ -48,7 +48,7 @@ class PacketRing {
       const std::uint64_t scan = first_scan_ + i / packets_per_scan_;
       std::byte* packet = bytes_.data() + i * format_.packet_bytes;
       const auto frame_id = static_cast<std::uint16_t>(scan);
-      if (!format_.legacy()) store(packet + kFrameIdOffset, frame_id);
+      if (!format_.legacy()) store(packet + kStandardHeader.frame_id_offset, frame_id);
       for (int c = 0; c < format_.columns_per_packet; ++c) {
         std::byte* column = packet + format_.layout->packet_header_bytes +
                             static_cast<std::size_t>(c) * format_.column_bytes;
