@@ -79,9 +79,9 @@ std::string no_datagrams(const FlowSurvey& survey, const std::filesystem::path& 
 }
 
 /// Of which sensors the largest flow's packets would be, in brackets; empty if nobody's.
-std::string size_clause(const std::vector<Flow>& flows) {
+std::string size_clause(const std::vector<Flow>& flows, int likely_beams) {
   for (const Flow& flow : flows) {
-    const std::string profiles = profiles_of_size(flow.bytes);
+    const std::string profiles = profiles_of_size(flow.bytes, likely_beams);
     if (!profiles.empty()) return fmt::format(" ({} bytes: {})", flow.bytes, profiles);
   }
   return {};
@@ -108,7 +108,8 @@ std::vector<Flow> flows_of_size(const FlowSurvey& survey, const std::filesystem:
       "sensor's or of another lidar profile, so give the right one with --meta{}.",
       file.string(), source_clause(source_ip), to_string(info.profile), info.lidar_mode,
       info.pixels_per_column, format.packet_bytes, info.lidar_port, list_flows(survey.flows),
-      size_clause(survey.flows), source_ip ? " or another --source-ip" : ""));
+      size_clause(survey.flows, info.pixels_per_column),
+      source_ip ? " or another --source-ip" : ""));
 }
 
 /// Leaves flows of other sensors out, unless there are no others: those contradict the metadata.

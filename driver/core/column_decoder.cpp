@@ -58,7 +58,10 @@ void decode_block(const PacketFormat& format, const std::byte* pixel, int first_
   const std::size_t stride = format.column_bytes;
   auto at = static_cast<std::size_t>(first_column);
   const auto decode = [&]<Channel kChannel, class T>(Image<T>& image) {
-    decode_row<kLayout.field(kChannel), kCount>(pixel, stride, image.data.data() + at);
+    // Images of channels that the profile lacks are empty: there is nothing to point into.
+    if constexpr (kLayout.field(kChannel).present()) {
+      decode_row<kLayout.field(kChannel), kCount>(pixel, stride, image.data.data() + at);
+    }
   };
   prefetch(pixel, kCount * stride);
   for (int r = 0; r < format.pixels_per_column; ++r) {

@@ -10,9 +10,9 @@
 namespace glint {
 namespace {
 
-/// Scans that must have ended before columns that never came are taken for columns that there are
-/// not.
-constexpr std::uint64_t kEnoughFrames = 4;
+/// Columns that came in none of so many scans are columns that there are not; the last scan may be
+/// cut off.
+constexpr std::uint64_t kEnoughFrames = 3;
 
 std::uint64_t as_number(const std::string& text) {
   std::uint64_t number = 0;
@@ -49,7 +49,7 @@ std::string other_columns(const SensorInfo& info, const PacketEvidence& seen,
   const bool too_many = seen.last_column >= info.columns_per_frame;
   // Other modes have half as many columns; a quarter missing each time is no loss on the way.
   const bool too_few =
-      seen.frames > kEnoughFrames && 4 * (seen.last_column + 1) <= 3 * (last_expected + 1);
+      seen.frames >= kEnoughFrames && 4 * (seen.last_column + 1) <= 3 * (last_expected + 1);
   if (!too_many && !too_few) return {};
   return fmt::format(
       "{} have columns up to {}, but the metadata has {} columns a scan with a window that ends at "

@@ -48,6 +48,16 @@ std::size_t usual_packet_bytes(const ProfileLayout& layout, int beams) {
                                   layout.packet_footer_bytes);
 }
 
+/// "RNG15_RFL8_NIR8, RNG15_RFL8_WIN8 with 128 beams"; empty if there is none.
+std::string profiles_with(int beams, std::size_t packet_bytes) {
+  std::string list;
+  for (const ProfileName& known : kProfileNames) {
+    if (usual_packet_bytes(profile_layout(known.profile), beams) != packet_bytes) continue;
+    list += fmt::format("{}{}", list.empty() ? "" : ", ", known.name);
+  }
+  return list.empty() ? list : fmt::format("{} with {} beams", list, beams);
+}
+
 }  // namespace
 
 std::span<const LidarProfile> lidar_profiles() {
@@ -93,13 +103,13 @@ std::string lidar_profile_list() {
   return list;
 }
 
-std::string profiles_of_size(std::size_t packet_bytes) {
+std::string profiles_of_size(std::size_t packet_bytes, int likely_beams) {
+  if (std::string likely = profiles_with(likely_beams, packet_bytes); !likely.empty())
+    return likely;
   std::string list;
-  for (const ProfileName& known : kProfileNames) {
-    for (const int beams : kUsualBeams) {
-      if (usual_packet_bytes(profile_layout(known.profile), beams) != packet_bytes) continue;
-      list += fmt::format("{}{} with {} beams", list.empty() ? "" : ", ", known.name, beams);
-    }
+  for (const int beams : kUsualBeams) {
+    const std::string profiles = profiles_with(beams, packet_bytes);
+    if (!profiles.empty()) list += fmt::format("{}{}", list.empty() ? "" : "; ", profiles);
   }
   return list;
 }

@@ -20,8 +20,8 @@ LidarProfile nearest_lidar_profile(std::string_view unknown);
 /// All lidar profiles' names, with commas between.
 std::string lidar_profile_list();
 
-/// Which profiles and usual numbers of beams have lidar packets of so many bytes, e.g. "LEGACY with
-/// 64 beams"; empty if none has.
-std::string profiles_of_size(std::size_t packet_bytes);
+/// Which profiles have lidar packets of so many bytes, e.g. "LEGACY with 64 beams": with the likely
+/// number of beams if any has, else with each usual one; empty if none has.
+std::string profiles_of_size(std::size_t packet_bytes, int likely_beams);
 
 }  // namespace glint

@@ -175,11 +175,12 @@ TEST(SensorInfo, UnknownProfileIsNamedWithTheNearestAndAllKnownOnes) {
 }
 
 TEST(SensorInfo, SizesTellTheProfiles) {
-  EXPECT_EQ(profiles_of_size(12'608), "LEGACY with 64 beams");
-  EXPECT_THAT(profiles_of_size(8'448),
-              AllOf(HasSubstr("RNG15_RFL8_NIR8 with 128 beams"),
-                    HasSubstr("RNG19_RFL8_SIG16_NIR16_DUAL with 32 beams")));
-  EXPECT_EQ(profiles_of_size(1), "");
+  EXPECT_EQ(profiles_of_size(12'608, 128), "LEGACY with 64 beams");
+  EXPECT_EQ(profiles_of_size(8'448, 128), "RNG15_RFL8_NIR8, RNG15_RFL8_WIN8 with 128 beams");
+  EXPECT_THAT(profiles_of_size(8'448, 16),
+              HasSubstr("ZONE16_DUAL, RNG19_RFL8_SIG16_NIR16_RGB16 with "
+                        "32 beams; RNG15_RFL8_NIR8_DUAL, "));
+  EXPECT_EQ(profiles_of_size(1, 64), "");
 }
 
 TEST(SensorInfo, WrongValuesAreRefusedByName) {

@@ -59,10 +59,12 @@ std::string next_host() {
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   static Server server;
-  const glint::SensorRequest request =
-      (data[0] & 1U) != 0
-          ? glint::SensorRequest{.method = "GET", .target = "/api/v1/sensor/metadata"}
-          : glint::SensorRequest{.target = "get_sensor_info"};
+  const bool over_http = (data[0] & 1U) != 0;
+  const glint::SensorRequest request{over_http ? "GET" : "",
+                                     over_http ? "/api/v1/sensor/metadata" : "get_sensor_info",
+                                     {},
+                                     {},
+                                     {}};
   int answers = 0;
   server.answer(glint::fuzz::as_text(data + 1, size - 1));
   const auto exchange = glint::start_exchange(
