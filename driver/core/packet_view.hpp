@@ -15,9 +15,8 @@ namespace glint {
 /// Why bytes are no lidar packet of this sensor.
 enum class PacketError {
   kNone,
-  kSize,    ///< Not the size that metadata predicts.
-  kType,    ///< The packet type field says it is not a lidar packet.
-  kSerial,  ///< Another sensor's serial number.
+  kSize,  ///< Not the size that metadata predicts.
+  kType,  ///< The packet type field says it is not a lidar packet.
 };
 
 /// One column of a checked packet. Valid while the packet's bytes are.
@@ -52,10 +51,12 @@ struct PacketHealth {
   std::uint8_t shot_limiting_state = 0;  ///< 0 normal, 1 imminent, 2 to 9 levels of reduction.
 };
 
-/// The header that a packet must have for its ids to be those of the sensor; null when both or
-/// neither fit, or the ids are not known (0).
+/// The header that a packet must have to be of this type (1 lidar, 2 IMU, 3 zone) and have the
+/// sensor's serial number, or its init id where that is not known; null when both or neither fit,
+/// or neither number is known (0).
 std::optional<PacketHeader> recognise_header(std::span<const std::byte> packet,
-                                             std::uint64_t serial_number, std::uint32_t init_id);
+                                             std::uint64_t serial_number, std::uint32_t init_id,
+                                             std::uint16_t type = 1);
 
 /// A lidar packet whose size has been checked against the format: no accessor reads outside.
 /// Non-owning; valid while the bytes are. Thread-compatible, no allocation, never throws.
