@@ -139,6 +139,18 @@ TEST_F(ClockJumpTest, LossAndSilenceAreNone) {
   EXPECT_EQ(stream.counters().clock_jumps, 0U);
 }
 
+// Then neither ids nor times go on; what comes after passes for a new count.
+TEST_F(ClockJumpTest, BackwardsInAnOutageCostsTwoPackets) {
+  auto sent = sent_scans(0, -900 * kSecond_ns);
+  sent[8].frame_id = 300;
+  sent[9].frame_id = 301;
+  Stream stream(info);
+  for (const int k : {4, 5, 8, 9}) stream.push_all(encode(info, sent[static_cast<std::size_t>(k)]));
+  EXPECT_EQ(stream.scans.size(), 4U);
+  EXPECT_EQ(stream.counters().stray_packets, 2U);
+  EXPECT_EQ(stream.counters().packets, 4U * kPackets - 2);
+}
+
 TEST_F(ClockJumpTest, RestartedSensorsClockBeginsAnew) {
   Stream stream(info);
   stream.push_all(packets(7000));
