@@ -97,7 +97,9 @@ class UdpNetwork : public testing::Test {
     host_->enter();
     ASSERT_TRUE(wait_for_cables(2));
   }
-  void TearDown() override { home_.enter(); }
+  void TearDown() override {
+    if (sensor_) home_.enter();
+  }
 
   [[nodiscard]] bool send(const std::string& from, const std::string& to, std::uint16_t port,
                           int value) const {

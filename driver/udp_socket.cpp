@@ -160,8 +160,8 @@ Descriptor open_bound(const UdpSocketOptions& options, std::uint16_t port) {
   }
   set_option(fd.get(), SOL_SOCKET, SO_RXQ_OVFL, 1);
   set_option(fd.get(), SOL_SOCKET, SO_TIMESTAMPNS, 1);
-  bind_socket(fd.get(), family, addresses, options, port);
   if (addresses.group) join_group(fd.get(), addresses, options);
+  bind_socket(fd.get(), family, addresses, options, port);
   return fd;
 }
 
