@@ -32,6 +32,7 @@ struct SourceHealth {
   std::atomic<SourceState> state{SourceState::kWaiting};
   std::atomic<std::uint64_t> packets{0};
   std::atomic<std::uint64_t> kernel_drops{0};
+  std::atomic<std::uint64_t> foreign{0};
   std::string error;  ///< Written before `state` becomes kFailed, never after.
 };
 

@@ -80,6 +80,7 @@ std::unique_ptr<PacketSource> open_capture(const fs::path& file, const SensorInf
 std::unique_ptr<UdpSource> open_udp(const SensorInfo& info, const Config::Sensor& sensor) {
   UdpSourceOptions options;
   options.bind_address = sensor.bind_address;
+  options.multicast_group = sensor.multicast_group;
   options.source_address = sensor.source_address;
   options.lidar_port =
       static_cast<std::uint16_t>(sensor.lidar_port > 0 ? sensor.lidar_port : info.lidar_port);

@@ -30,6 +30,7 @@ Json counters_json(const RuntimeStatus& runtime) {
   const AssemblerCounters& c = snapshot.packets;
   return Json{{"received_packets", runtime.packets_received},
               {"kernel_drops", runtime.kernel_drops},
+              {"foreign_packets", runtime.foreign},
               {"queue_drops", runtime.packets.dropped},
               {"lidar_packets", c.packets},
               {"imu_packets", snapshot.imu_packets},

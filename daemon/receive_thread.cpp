@@ -13,6 +13,7 @@ void ReceiveThread::run() {
     if (status == SourceStatus::kPacket) take_packet();
     if (status == SourceStatus::kIdle) tell_silence();
     health.kernel_drops.store(source_.kernel_drops(), std::memory_order_relaxed);
+    health.foreign.store(source_.foreign(), std::memory_order_relaxed);
   }
   if (status == SourceStatus::kError) health.error = source_.error();
   health.state = status == SourceStatus::kError ? SourceState::kFailed : SourceState::kEnded;

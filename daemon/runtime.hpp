@@ -41,6 +41,7 @@ struct RuntimeStatus {
   std::string source_error;
   std::uint64_t packets_received = 0;
   std::uint64_t kernel_drops = 0;
+  std::uint64_t foreign = 0;  ///< Datagrams of other senders.
   QueueStatus packets;
   QueueStatus keyframes;
 };

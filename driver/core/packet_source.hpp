@@ -36,6 +36,8 @@ class PacketSource {
   virtual void stop() = 0;
   /// Datagrams that the kernel dropped before they could be read, since start; 0 in replay.
   [[nodiscard]] virtual std::uint64_t kernel_drops() const { return 0; }
+  /// Datagrams from others than the sensor, since start; 0 where any sender is taken.
+  [[nodiscard]] virtual std::uint64_t foreign() const { return 0; }
   /// What a user should know of the source, a sentence each; more may come at its end.
   [[nodiscard]] virtual std::vector<std::string> notices() const { return {}; }
   /// A sentence on what broke after kError; empty otherwise.
