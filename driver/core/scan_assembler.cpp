@@ -77,8 +77,8 @@ struct ScanAssembler::Impl {
   const AssemblerOptions options;
   const std::int64_t scan_period_ns;
   const std::int64_t timeout_ns;
-  const std::uint64_t serial_number;  // 0: not known
-  const std::uint32_t metadata_init_id;
+  std::uint64_t serial_number;  // 0: not known
+  std::uint32_t metadata_init_id;
   bool header_proved = false;
   const std::uint64_t packets_per_scan;
   AssemblerCounters counters;
@@ -385,6 +385,21 @@ PacketError ScanAssembler::push(std::span<const std::byte> datagram) {
 }
 const LidarScan* ScanAssembler::next() { return impl_->next(); }
 void ScanAssembler::flush() { impl_->flush(); }
+
+void ScanAssembler::set_identity(const SensorInfo& info) {
+  impl_->serial_number = parse_serial_number(info.serial_number);
+  impl_->metadata_init_id = info.init_id;
+  impl_->header_proved = false;
+}
+
+void ScanAssembler::change_sensor(const SensorInfo& info) {
+  auto fresh = std::make_unique<Impl>(info, impl_->options);
+  fresh->counters = impl_->counters;
+  fresh->newest_sequence = fresh->left_sequence = impl_->newest_sequence;
+  fresh->tell_restart = true;
+  impl_ = std::move(fresh);
+}
+
 const AssemblerCounters& ScanAssembler::counters() const { return impl_->counters; }
 const PacketFormat& ScanAssembler::format() const { return impl_->format; }
 

@@ -57,6 +57,12 @@ class ScanAssembler {
   const LidarScan* next();
   /// The stream ended or fell silent: unfinished scans leave as they are, by next().
   void flush();
+  /// The sensor has restarted with the same packets, or was replaced by one of its kind: whose
+  /// packets are taken from here on.
+  void set_identity(const SensorInfo& info);
+  /// What follows are packets of another layout. Drops what is unfinished or not taken, counts and
+  /// numbers on. Allocates.
+  void change_sensor(const SensorInfo& info);
 
   [[nodiscard]] const AssemblerCounters& counters() const;
   [[nodiscard]] const PacketFormat& format() const;
