@@ -32,6 +32,7 @@ class Api {
   [[nodiscard]] Json pose(const Snapshot& snapshot, PoseFrames frames) const;
   /// sensor, state and time: what every answer has.
   [[nodiscard]] Json head() const;
+  [[nodiscard]] const EventLog& events() const { return runtime_.events(); }
   [[nodiscard]] double scan_rate_hz() const { return runtime_.info().scan_rate_hz; }
   /// Clients connected now, for status.
   void set_client_count(std::size_t count) { client_count_ = count; }

@@ -12,6 +12,7 @@
 #include "daemon/backend_thread.hpp"
 #include "daemon/config.hpp"
 #include "daemon/crossings.hpp"
+#include "daemon/event_log.hpp"
 #include "daemon/odometry_thread.hpp"
 #include "daemon/receive_thread.hpp"
 #include "driver/core/sensor_info.hpp"
@@ -24,6 +25,8 @@ struct RuntimeOptions {
   bool lossless = false;
   std::filesystem::path session_file;  ///< Empty: no session is kept.
   std::string source_name;             ///< For status: "udp:7502", "pcap:drive.pcap".
+  /// Where everyone posts events; never null.
+  std::shared_ptr<EventLog> events = std::make_shared<EventLog>();
 };
 
 /// What fills a queue.
@@ -79,6 +82,7 @@ class Runtime {
 
   [[nodiscard]] const SensorInfo& info() const { return info_; }
   [[nodiscard]] const RuntimeOptions& options() const { return options_; }
+  [[nodiscard]] EventLog& events() const { return *options_.events; }
 
  private:
   void spawn(const char* name, std::function<void()> body);
