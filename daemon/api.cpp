@@ -17,10 +17,11 @@ namespace glint::daemon {
 namespace {
 
 /// What hello announces: only what works.
-constexpr std::array kFeatures = {
-    "get_pose",       "get_pose.at_ns", "get_pose.predict_ms", "get_status",       "get_map",
-    "get_trajectory", "get_config",     "subscribe.pose",      "subscribe.status", "unsubscribe",
-    "pause",          "resume",         "reset_odometry"};
+constexpr std::array kFeatures = {"get_pose",         "get_pose.at_ns", "get_pose.predict_ms",
+                                  "get_status",       "get_map",        "get_trajectory",
+                                  "get_config",       "subscribe.pose", "subscribe.status",
+                                  "subscribe.events", "unsubscribe",    "pause",
+                                  "resume",           "reset_odometry"};
 
 /// Tells one run of the daemon from the next.
 std::string random_instance() {

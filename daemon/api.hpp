@@ -34,6 +34,7 @@ class Api {
   [[nodiscard]] Json pose(const Snapshot& snapshot, PoseFrames frames) const;
   /// sensor, state and time: what every answer has.
   [[nodiscard]] Json head() const;
+  [[nodiscard]] const EventLog& events() const { return runtime_.events(); }
   [[nodiscard]] double scan_rate_hz() const { return runtime_.scan_rate_hz(); }
   /// The session with the sensor, for status; must outlive the calls.
   void set_sensor(const SensorLink& sensor) { sensor_ = &sensor; }
