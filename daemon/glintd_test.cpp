@@ -4,6 +4,7 @@
 // The process: options, exit codes, sentences, signals, notification. GLINTD names the program.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <sys/wait.h>
@@ -70,6 +71,30 @@ class Process {
   pid_t pid_ = -1;
 };
 
+/// A UDP port of this machine, held as long as this lives.
+class HeldPort {
+ public:
+  HeldPort() : socket_(::socket(AF_INET6, SOCK_DGRAM, 0)) {
+    sockaddr_in6 address{};
+    address.sin6_family = AF_INET6;
+    socklen_t size = sizeof address;
+    void* generic = &address;
+    if (bind(socket_, static_cast<sockaddr*>(generic), size) == 0) {
+      getsockname(socket_, static_cast<sockaddr*>(generic), &size);
+    }
+    port_ = ntohs(address.sin6_port);
+  }
+  ~HeldPort() { release(); }
+  HeldPort(const HeldPort&) = delete;
+  HeldPort& operator=(const HeldPort&) = delete;
+  void release() { close(std::exchange(socket_, -1)); }
+  [[nodiscard]] std::string text() const { return std::to_string(port_); }
+
+ private:
+  int socket_;
+  int port_ = 0;
+};
+
 class GlintdTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -104,6 +129,17 @@ class GlintdTest : public testing::Test {
   std::vector<std::string> serve_capture(int scans) {
     return {"--source", "pcap:" + write_capture(scans).string(),
             "--rate",   "max",
+            "--set",    "server.listen=",
+            "--set",    "server.unix_socket=" + socket(),
+            "--set",    "state.directory=" + (directory_ / "state").string()};
+  }
+
+  /// Arguments for a daemon that waits for a sensor where there is none.
+  [[nodiscard]] std::vector<std::string> await_sensor(const std::string& port) const {
+    return {"--config", "/dev/null",
+            "--set",    "sensor.host=127.0.0.1:1",
+            "--set",    "sensor.lidar_port=" + port,
+            "--set",    "sensor.imu_port=" + port,
             "--set",    "server.listen=",
             "--set",    "server.unix_socket=" + socket(),
             "--set",    "state.directory=" + (directory_ / "state").string()};
@@ -207,6 +243,37 @@ TEST_F(GlintdTest, TwoSensorsOnOnePortReachTheirOwnDaemonsOnly) {
   EXPECT_THAT(log_, HasSubstr("multicast group 192.0.2.1 is none"));
 }
 
+TEST_F(GlintdTest, ServesBeforeItsSensorHasPower) {
+  HeldPort port;
+  const auto arguments = await_sensor(port.text());
+  EXPECT_EQ(exit_code(arguments), 1) << "the port is held";
+  EXPECT_THAT(log_, HasSubstr("port " + port.text() + " is held by another program"));
+  port.release();
+  Process process(arguments, directory_);
+  const Json status =
+      poll_status([](const Json& s) { return s["sensor_session"]["failures"] > 0; });
+  ASSERT_FALSE(status.is_null()) << process.log();
+  EXPECT_EQ(status["state"], "INIT");
+  EXPECT_EQ(status["sensor_state"], "DISCOVERING");
+  EXPECT_THAT(status["sensor_session"]["failure"].get<std::string>(),
+              HasSubstr("127.0.0.1 refuses connections on port 1"));
+  process.signal(SIGTERM);
+  EXPECT_EQ(process.wait(), 0);
+  EXPECT_THAT(process.log(), AllOf(HasSubstr("127.0.0.1 refuses connections on port 1"),
+                                   HasSubstr("stopped after 0 poses")));
+}
+
+TEST_F(GlintdTest, WhatTheCaptureSaysAtItsEndIsLogged) {
+  auto arguments = serve_capture(2);
+  const fs::path capture = directory_ / "room.pcap";
+  fs::resize_file(capture, fs::file_size(capture) - 100);
+  Process process(arguments, directory_);
+  ASSERT_FALSE(poll_status([](const Json& s) { return s["sensor_state"] == "ENDED"; }).is_null());
+  process.signal(SIGTERM);
+  EXPECT_EQ(process.wait(), 0);
+  EXPECT_THAT(process.log(), HasSubstr("breaks off"));
+}
+
 TEST_F(GlintdTest, ReloadTellsWhatItCannotChange) {
   const fs::path config = directory_ / "glint.toml";
   std::ofstream(config) << "[log]\nlevel = \"info\"\n";
@@ -231,7 +298,11 @@ TEST_F(GlintdTest, BadConfigurationsExitWith78AndASentence) {
   EXPECT_EQ(exit_code({"--config", "/nonexistent.toml"}), 78);
   EXPECT_THAT(log_, HasSubstr("/nonexistent.toml"));
   EXPECT_EQ(exit_code({"--config", "/dev/null"}), 78) << "a live source without metadata";
-  EXPECT_THAT(log_, HasSubstr("sensor.metadata_file"));
+  EXPECT_THAT(log_, AllOf(HasSubstr("sensor.host"), HasSubstr("sensor.metadata_file")));
+  EXPECT_EQ(exit_code({"--config", "/dev/null", "--check-config", "--set", "sensor.host=h", "--set",
+                       "sensor.azimuth_window_mdeg=[0, 360]"}),
+            78);
+  EXPECT_THAT(log_, HasSubstr("[0, 360000]"));
   EXPECT_EQ(exit_code({"--source", "pcap:/nonexistent.pcap"}), 78);
   EXPECT_EQ(exit_code({"--source", "tape"}), 78);
   auto arguments = serve_capture(1);

@@ -38,7 +38,7 @@ class UdpSource final : public PacketSource {
 
   /// From now on, datagrams from other addresses are counted as foreign and dropped; empty: all
   /// are taken. @throws InputError when it is no address.
-  void set_source_address(const std::string& address);
+  void set_source_address(const std::string& address) override;
 
   /// Datagrams larger than UDP allows, which the kernel cut and which were dropped.
   [[nodiscard]] std::uint64_t truncated() const;

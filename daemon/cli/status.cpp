@@ -45,6 +45,9 @@ void print(const Json& status) {
       "sensor     {} ({}){}\n", status["sensor_state"].get<std::string>(),
       status["source"].get<std::string>(),
       status.contains("sensor_error") ? ": " + status["sensor_error"].get<std::string>() : "");
+  if (status.contains("sensor_session") && status["sensor_session"].contains("failure")) {
+    fmt::print("           {}\n", status["sensor_session"]["failure"].get<std::string>());
+  }
   if (status.contains("age_ms")) {
     fmt::print("last pose  {} s, {:.0f} ms ago\n", status["t"].get<std::string>(),
                status["age_ms"].get<double>());
