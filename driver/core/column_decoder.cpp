@@ -80,7 +80,10 @@ void decode_pixels(const ColumnBlock& block, int columns, int first_row) {
 
 ColumnBlock block_at(const PacketFormat& format, const std::byte* pixels, int first_column,
                      LidarScan& scan) {
-  const auto at = [&]<class T>(Image<T>& image) { return image.data.data() + first_column; };
+  // Images of channels that the profile lacks are empty: there is nothing to point into.
+  const auto at = [&]<class T>(Image<T>& image) {
+    return image.empty() ? nullptr : image.data.data() + first_column;
+  };
   return {.pixels = pixels,
           .column_bytes = format.column_bytes,
           .row_pixels = static_cast<std::size_t>(format.columns_per_frame),
