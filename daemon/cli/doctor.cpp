@@ -67,8 +67,8 @@ Findings ask_daemon(const std::string& connect) {
     const Json counters = status.value("counters", Json::object());
     const auto drops = counters.value("kernel_drops", std::uint64_t{0});
     if (drops > 0) {
-      return {{FindingLevel::kWarn, step, fmt::format("the kernel dropped {} of glintd's packets",
-                                                      drops),
+      return {{FindingLevel::kWarn, step,
+               fmt::format("the kernel dropped {} of glintd's packets", drops),
                "raise sensor.rcvbuf_bytes and net.core.rmem_max"}};
     }
     return {{FindingLevel::kOk, step, "glintd receives packets, none dropped by the kernel", {}}};

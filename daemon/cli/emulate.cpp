@@ -2,8 +2,6 @@
 // Copyright 2026 The Glint Authors
 //
 // glint emulate: a sensor on the wire, by a capture of one.
-#include "daemon/emulate/emulation.hpp"
-
 #include <fmt/format.h>
 
 #include <iostream>
@@ -11,6 +9,7 @@
 
 #include "daemon/cli/capture_input.hpp"
 #include "daemon/cli/command.hpp"
+#include "daemon/emulate/emulation.hpp"
 #include "daemon/emulate/udp_sender.hpp"
 #include "daemon/host_port.hpp"
 #include "daemon/replay_pacer.hpp"
@@ -35,9 +34,7 @@ struct EmulateOptions {
   double delay_s = 0.0;
   daemon::EmulationOptions emulation;
 
-  [[nodiscard]] bool has_control() const {
-    return http_port || tcp_port || !scenario.empty();
-  }
+  [[nodiscard]] bool has_control() const { return http_port || tcp_port || !scenario.empty(); }
 };
 
 std::int64_t to_ns(double seconds) { return std::llround(seconds / kSecondsPerNs); }
@@ -46,8 +43,9 @@ std::int64_t to_ns(double seconds) { return std::llround(seconds / kSecondsPerNs
 void take_destination(EmulateOptions& options) {
   if (options.to.empty()) {
     if (options.has_control()) return;
-    throw UsageError("Name where packets go to with --to HOST:PORT, or give the sensor a control "
-                     "side with --http PORT.");
+    throw UsageError(
+        "Name where packets go to with --to HOST:PORT, or give the sensor a control "
+        "side with --http PORT.");
   }
   const auto target = daemon::parse_host_port(options.to);
   if (!target || target->port == 0) {
@@ -157,8 +155,9 @@ void add_line_options(CLI::App& command, EmulateOptions& options) {
   emulator::PacketFaults& faults = options.emulation.faults;
   command.add_option("--loss", faults.loss, "Share of packets that the network loses")
       ->check(share);
-  command.add_option("--reordering", faults.reordering,
-                     "Share of packets that arrive one to three late")
+  command
+      .add_option("--reordering", faults.reordering,
+                  "Share of packets that arrive one to three late")
       ->check(share);
   command.add_option("--duplicates", faults.duplicates, "Share of packets that arrive twice")
       ->check(share);
@@ -180,8 +179,9 @@ void add_control_options(CLI::App& command, EmulateOptions& options) {
   command.add_option("--boot", options.boot_s, "How long it takes to start, s")
       ->check(CLI::Range(0.0, 600.0))
       ->capture_default_str();
-  command.add_option("--reinitialise", options.reinitialise_s,
-                     "How long it takes to apply settings, s")
+  command
+      .add_option("--reinitialise", options.reinitialise_s,
+                  "How long it takes to apply settings, s")
       ->check(CLI::Range(0.0, 600.0))
       ->capture_default_str();
   command.add_option("--scenario", options.scenario,

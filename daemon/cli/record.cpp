@@ -28,13 +28,12 @@ struct RecordOptions {
 };
 
 void print_summary(const daemon::RecordingResult& done, const RecordOptions& options) {
-  fmt::print("recorded {} lidar and {} IMU packets in {:.1f} s: {:.1f} MB in {} file{}{}\n",
-             done.lidar_packets, done.imu_packets, done.seconds,
-             static_cast<double>(done.bytes) / static_cast<double>(kMegabyte),
-             done.files - done.deleted_files, done.files - done.deleted_files == 1 ? "" : "s",
-             done.deleted_files > 0
-                 ? fmt::format(", {} older ones deleted", done.deleted_files)
-                 : "");
+  fmt::print(
+      "recorded {} lidar and {} IMU packets in {:.1f} s: {:.1f} MB in {} file{}{}\n",
+      done.lidar_packets, done.imu_packets, done.seconds,
+      static_cast<double>(done.bytes) / static_cast<double>(kMegabyte),
+      done.files - done.deleted_files, done.files - done.deleted_files == 1 ? "" : "s",
+      done.deleted_files > 0 ? fmt::format(", {} older ones deleted", done.deleted_files) : "");
   fmt::print("dropped by the kernel {}, for a slow disk {}\n", done.kernel_drops, done.disk_drops);
   if (done.other_packets > 0) {
     fmt::print("{} packets have another size than the metadata say\n", done.other_packets);
@@ -74,25 +73,28 @@ void add_record(CLI::App& app) {
       "record", "Record a live sensor's packets and metadata, until Ctrl-C or --seconds");
   const auto options = std::make_shared<RecordOptions>();
   daemon::RecordingOptions& recording = options->recording;
-  command->add_option("--sensor", recording.sensor, "The sensor's name or address, if need be :PORT")
+  command
+      ->add_option("--sensor", recording.sensor, "The sensor's name or address, if need be :PORT")
       ->required();
   command->add_option("--out", options->out, "Capture to write; metadata go beside it, as .json")
       ->required();
   command->add_option("--seconds", recording.seconds, "How long, s")->check(CLI::PositiveNumber);
-  command->add_option("--split", options->split_mb,
-                      "Begin another file every so many MB: NAME_0001.pcap, NAME_0002.pcap, ...")
+  command
+      ->add_option("--split", options->split_mb,
+                   "Begin another file every so many MB: NAME_0001.pcap, NAME_0002.pcap, ...")
       ->check(CLI::PositiveNumber);
-  command->add_option("--max-total", options->max_total_mb,
-                      "Delete the oldest files so that all have at most so many MB")
+  command
+      ->add_option("--max-total", options->max_total_mb,
+                   "Delete the oldest files so that all have at most so many MB")
       ->check(CLI::PositiveNumber);
   command->add_flag("--configure", recording.configure,
                     "Have the sensor send here; without it, it is left as it is");
-  command->add_option("--lidar-port", recording.lidar_port, "Port of lidar packets; default: the "
-                                                            "sensor's, with --configure 7502");
+  command->add_option("--lidar-port", recording.lidar_port,
+                      "Port of lidar packets; default: the "
+                      "sensor's, with --configure 7502");
   command->add_option("--imu-port", recording.imu_port,
                       "Port of IMU packets; default: the sensor's, with --configure 7503");
-  command->add_option("--meta", options->meta,
-                      "Metadata file, for a sensor that cannot be asked");
+  command->add_option("--meta", options->meta, "Metadata file, for a sensor that cannot be asked");
   command->add_option("--wait", recording.patience_s, "How long to wait for its metadata, s")
       ->check(CLI::Range(0.1, 86'400.0))
       ->capture_default_str();

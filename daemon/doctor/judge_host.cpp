@@ -169,18 +169,19 @@ Findings judge_fragments(const RouteLookup& route, const SensorFacts& sensor) {
   const auto bytes = static_cast<int>(PacketFormat(*sensor.info).packet_bytes);
   const std::string& interface = route.route->interface;
   if (bytes + kIpAndUdpHeaders <= mtu) {
-    return {ok("MTU", fmt::format("packets of {} bytes fit the MTU {} of {}", bytes, mtu,
-                                  interface))};
+    return {
+        ok("MTU", fmt::format("packets of {} bytes fit the MTU {} of {}", bytes, mtu, interface))};
   }
   const int step = (mtu - kIpHeader) / 8 * 8;
   const int fragments = (bytes + kIpAndUdpHeaders - kIpHeader + step - 1) / step;
-  return {{FindingLevel::kWarn, "MTU",
-           fmt::format("packets of {} bytes come in {} fragments at MTU {} of {}; one lost fragment "
-                       "loses them all",
-                       bytes, fragments, mtu, interface),
-           fmt::format("if sensor and switch allow: ip link set {} mtu 9000; else the low data rate "
-                       "profile: sensor.udp_profile_lidar = \"RNG15_RFL8_NIR8\"",
-                       interface)}};
+  return {
+      {FindingLevel::kWarn, "MTU",
+       fmt::format("packets of {} bytes come in {} fragments at MTU {} of {}; one lost fragment "
+                   "loses them all",
+                   bytes, fragments, mtu, interface),
+       fmt::format("if sensor and switch allow: ip link set {} mtu 9000; else the low data rate "
+                   "profile: sensor.udp_profile_lidar = \"RNG15_RFL8_NIR8\"",
+                   interface)}};
 }
 
 Findings judge_gravity(const PacketFacts& packets, const DoctorWishes& wishes) {
@@ -209,10 +210,10 @@ Findings judge_gravity(const PacketFacts& packets, const DoctorWishes& wishes) {
                                  "mount.T_base_sensor",
                                  size, tilt_deg))};
   }
-  return {{FindingLevel::kWarn, step,
-           fmt::format("gravity is {:.0f} degrees off base's z axis by mount.T_base_sensor",
-                       tilt_deg),
-           "correct the rotation of mount.T_base_sensor, unless the robot stands on a slope"}};
+  return {
+      {FindingLevel::kWarn, step,
+       fmt::format("gravity is {:.0f} degrees off base's z axis by mount.T_base_sensor", tilt_deg),
+       "correct the rotation of mount.T_base_sensor, unless the robot stands on a slope"}};
 }
 
 }  // namespace glint::daemon

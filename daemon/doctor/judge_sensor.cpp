@@ -54,10 +54,9 @@ Finding judge_destination(const SensorFacts& sensor, const HostFacts& host) {
 
 Finding judge_metadata(const SensorFacts& sensor) {
   if (sensor.info) {
-    return ok("metadata",
-              fmt::format("{} {}, {}, profile {}", sensor.info->product_line,
-                          sensor.info->serial_number, sensor.info->lidar_mode,
-                          to_string(sensor.info->profile)));
+    return ok("metadata", fmt::format("{} {}, {}, profile {}", sensor.info->product_line,
+                                      sensor.info->serial_number, sensor.info->lidar_mode,
+                                      to_string(sensor.info->profile)));
   }
   return {FindingLevel::kFail, "metadata", sensor.info_failure,
           "update the sensor's firmware, or report this with its metadata"};
@@ -98,9 +97,9 @@ Finding judge_clock(const SensorFacts& sensor) {
     return {FindingLevel::kWarn, step, "times are from a sync pulse, but there is none",
             "check the pulse's wire, sync_pulse_in_polarity and multipurpose_io_mode"};
   }
-  return ok(step, fmt::format("times are by {}", sensor.timestamp_mode.empty()
-                                                     ? "the sensor's own clock"
-                                                     : sensor.timestamp_mode));
+  return ok(step,
+            fmt::format("times are by {}", sensor.timestamp_mode.empty() ? "the sensor's own clock"
+                                                                         : sensor.timestamp_mode));
 }
 
 }  // namespace
@@ -108,10 +107,10 @@ Finding judge_clock(const SensorFacts& sensor) {
 Finding judge_route(const RouteLookup& lookup, const DoctorWishes& wishes) {
   if (lookup.route) {
     const Route& route = *lookup.route;
-    return ok("route", fmt::format("{} is reached through {} as {}", route.address,
-                                   route.interface.empty() ? "an interface without a name"
-                                                           : route.interface,
-                                   route.local_address));
+    return ok("route",
+              fmt::format("{} is reached through {} as {}", route.address,
+                          route.interface.empty() ? "an interface without a name" : route.interface,
+                          route.local_address));
   }
   return {FindingLevel::kFail, "route", lookup.failure,
           fmt::format("check the cable and the name {}, and give the interface an address of the "

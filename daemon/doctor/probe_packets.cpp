@@ -58,8 +58,8 @@ std::optional<std::uint64_t> count_on_wire(const PacketLook& look, std::int64_t 
     if (poll(&readable, 1, kPoll_ms) <= 0) continue;
     sockaddr_ll from{};
     socklen_t size = sizeof from;
-    const ssize_t bytes = recvfrom(wire, start.data(), start.size(), 0,
-                                   reinterpret_cast<sockaddr*>(&from), &size);
+    const ssize_t bytes =
+        recvfrom(wire, start.data(), start.size(), 0, reinterpret_cast<sockaddr*>(&from), &size);
     if (bytes <= 0 || from.sll_pkttype == PACKET_OUTGOING) continue;
     const auto port = udp_port(std::span(start).first(static_cast<std::size_t>(bytes)));
     if (port == look.lidar_port || port == look.imu_port) ++count;
@@ -75,8 +75,8 @@ void take(const RawPacket& packet, const PacketLook& look, PacketFacts& facts) {
     return;
   }
   std::vector<ImuSample> samples;
-  const bool is_imu = look.info ? parse_imu_packet(ImuPacketFormat(*look.info), packet.bytes, samples)
-                                : false;
+  const bool is_imu =
+      look.info ? parse_imu_packet(ImuPacketFormat(*look.info), packet.bytes, samples) : false;
   if (is_imu) {
     ++facts.imu;
     for (const ImuSample& sample : samples) {
@@ -112,8 +112,7 @@ void listen(const PacketLook& look, std::int64_t end_ns, PacketFacts& facts) {
 PacketFacts PacketLook::look() const {
   PacketFacts facts;
   facts.seconds = seconds;
-  const std::int64_t end_ns =
-      steady_now_ns() + static_cast<std::int64_t>(seconds / kSecondsPerNs);
+  const std::int64_t end_ns = steady_now_ns() + static_cast<std::int64_t>(seconds / kSecondsPerNs);
   std::thread wire([&] { facts.on_wire = count_on_wire(*this, end_ns); });
   listen(*this, end_ns, facts);
   wire.join();

@@ -15,8 +15,8 @@ namespace {
 class Interview {
  public:
   explicit Interview(const std::string& host)
-      : client_(io_, parse_sensor_address(host), {std::chrono::seconds(4), std::chrono::seconds(4)}) {
-  }
+      : client_(io_, parse_sensor_address(host),
+                {std::chrono::seconds(4), std::chrono::seconds(4)}) {}
 
   SensorReply ask(SensorResource resource) {
     SensorReply answer;

@@ -94,9 +94,9 @@ class Emulation {
     constexpr std::int64_t kTaiMinusUtc_ns = 37 * kNsPerSecond;
     control.sensor.ptp_minus_monotonic_ns =
         read_clock_ns(CLOCK_REALTIME) + kTaiMinusUtc_ns - steady_now_ns();
-    emulator_.emplace(
-        io_, control, stage_clock(),
-        [this](const emulator::EmulatedStream& stream) { sender_.set_stream(stream); });
+    emulator_.emplace(io_, control, stage_clock(), [this](const emulator::EmulatedStream& stream) {
+      sender_.set_stream(stream);
+    });
     if (options_.on_listening) {
       options_.on_listening(emulator_->http_port(), emulator_->tcp_port());
     }
@@ -117,8 +117,7 @@ class Emulation {
   void play() {
     const auto due_ns = player_->play(steady_now_ns() - start_ns_);
     if (!due_ns) return;
-    scenario_timer_.expires_after(
-        std::chrono::nanoseconds(start_ns_ + *due_ns - steady_now_ns()));
+    scenario_timer_.expires_after(std::chrono::nanoseconds(start_ns_ + *due_ns - steady_now_ns()));
     scenario_timer_.async_wait([this](error_code error) {
       if (!error) play();
     });

@@ -31,9 +31,9 @@ struct EmulationOptions {
   std::uint64_t loops = 1;           ///< 0: for ever.
   std::string from;                  ///< Own address to send from; empty: that of the route.
   emulator::PacketFaults faults;
-  std::uint64_t seed = 1;            ///< Of the faults.
-  std::optional<double> seconds;     ///< Null: until it ends, or a signal comes.
-  std::filesystem::path report;      ///< Written every second and at the end; empty: none.
+  std::uint64_t seed = 1;         ///< Of the faults.
+  std::optional<double> seconds;  ///< Null: until it ends, or a signal comes.
+  std::filesystem::path report;   ///< Written every second and at the end; empty: none.
   /// Told once the control side listens.
   std::function<void(std::uint16_t http_port, std::uint16_t tcp_port)> on_listening;
 };

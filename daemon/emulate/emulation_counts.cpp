@@ -8,12 +8,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json to_json(const PacketCounts& counts) {
-  return {{"sent", counts.sent},
-          {"lost", counts.lost},
-          {"delayed", counts.delayed},
-          {"duplicated", counts.duplicated},
-          {"delivered", counts.delivered},
-          {"failed", counts.failed}};
+  return {{"sent", counts.sent},           {"lost", counts.lost},
+          {"delayed", counts.delayed},     {"duplicated", counts.duplicated},
+          {"delivered", counts.delivered}, {"failed", counts.failed}};
 }
 
 }  // namespace

@@ -21,15 +21,15 @@ struct PacketCounts {
 struct EmulationCounts {
   PacketCounts lidar;
   PacketCounts imu;
-  std::uint64_t scans = 0;            ///< Fed whole to the network.
-  std::uint64_t cut_packets = 0;      ///< Lidar packets that scans lacked when sending stopped.
-  std::uint64_t not_sent = 0;         ///< Lidar packets of the time in which it did not send.
-  std::uint64_t starts = 0;           ///< Of the stream.
-  std::uint64_t clock_jumps = 0;      ///< While sending.
-  std::uint64_t foreign_address = 0;  ///< Lidar packets from another address,
-  std::uint64_t foreign_size = 0;     ///< a byte short,
-  std::uint64_t foreign_serial = 0;   ///< of another serial number.
-  std::int64_t worst_lateness_ns = 0; ///< Of a packet behind its time.
+  std::uint64_t scans = 0;             ///< Fed whole to the network.
+  std::uint64_t cut_packets = 0;       ///< Lidar packets that scans lacked when sending stopped.
+  std::uint64_t not_sent = 0;          ///< Lidar packets of the time in which it did not send.
+  std::uint64_t starts = 0;            ///< Of the stream.
+  std::uint64_t clock_jumps = 0;       ///< While sending.
+  std::uint64_t foreign_address = 0;   ///< Lidar packets from another address,
+  std::uint64_t foreign_size = 0;      ///< a byte short,
+  std::uint64_t foreign_serial = 0;    ///< of another serial number.
+  std::int64_t worst_lateness_ns = 0;  ///< Of a packet behind its time.
 };
 
 /// As it stands in a report.

@@ -94,8 +94,8 @@ class PacketSender final : public emulator::PacketFaultSink {
   emulator::FedPacket next_;
   bool has_next_ = false;
   bool feed_ended_ = false;
-  std::int64_t began_ns_ = 0;            ///< Of the stream,
-  std::int64_t first_offset_ns_ = 0;     ///< and its clock's offset then.
+  std::int64_t began_ns_ = 0;         ///< Of the stream,
+  std::int64_t first_offset_ns_ = 0;  ///< and its clock's offset then.
   std::uint64_t sent_of_scan_ = 0;
   std::uint64_t foreign_sent_ = 0;
   std::vector<std::byte> foreign_;

@@ -46,9 +46,9 @@ void CaptureParts::begin_file() {
   for (const fs::path& file : {current_, metadata_file(current_)}) {
     std::error_code ignored;
     if (!fs::exists(file, ignored)) continue;
-    throw InputError(fmt::format(
-        "{} is there already and is not written over; name another file, or remove it",
-        file.string()));
+    throw InputError(
+        fmt::format("{} is there already and is not written over; name another file, or remove it",
+                    file.string()));
   }
   // First, so that there is no capture without its metadata.
   cli::write_text_file(metadata_file(current_), metadata_json_);

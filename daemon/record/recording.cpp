@@ -118,14 +118,14 @@ class Recording {
     line.udp.source_address = to_string(line.sensor);
     line.udp.rcvbuf_bytes = options_.rcvbuf_bytes;
     if (line.udp.lidar_port == 0) {
-      throw InputError(fmt::format("{} sends no lidar packets, for its udp_port_lidar is 0; record "
-                                   "with --configure",
-                                   options_.sensor));
+      throw InputError(
+          fmt::format("{} sends no lidar packets, for its udp_port_lidar is 0; record "
+                      "with --configure",
+                      options_.sensor));
     }
     parts_.emplace(options_.files, metadata_json);
     tell(fmt::format("recording ports {} and {} of {} to {}", line.udp.lidar_port,
-                     line.udp.imu_port, line.udp.source_address,
-                     parts_->current_file().string()));
+                     line.udp.imu_port, line.udp.source_address, parts_->current_file().string()));
     begun_ns_ = steady_now_ns();
     recorder_.emplace(line, info, *parts_, [this](const std::string& error) {
       asio::post(io_, [this, error] { fail(error); });

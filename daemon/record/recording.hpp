@@ -12,9 +12,9 @@
 namespace glint::daemon {
 
 struct RecordingOptions {
-  std::string sensor;         ///< HOST or HOST:PORT of its HTTP interface.
-  std::string metadata_json;  ///< Empty: the sensor is asked.
-  bool configure = false;     ///< Have it send here; else it is left as it is.
+  std::string sensor;                       ///< HOST or HOST:PORT of its HTTP interface.
+  std::string metadata_json;                ///< Empty: the sensor is asked.
+  bool configure = false;                   ///< Have it send here; else it is left as it is.
   std::optional<std::uint16_t> lidar_port;  ///< Null: as the sensor has it.
   std::optional<std::uint16_t> imu_port;
   int rcvbuf_bytes = 8 << 20;

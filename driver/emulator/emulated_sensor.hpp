@@ -17,8 +17,8 @@
 namespace glint::emulator {
 
 struct EmulatedSensorOptions {
-  std::string metadata_json;  ///< What it says of itself, in either form.
-  std::string firmware;       ///< "v3.1.0"; decides its interface. Empty: that of the metadata.
+  std::string metadata_json;      ///< What it says of itself, in either form.
+  std::string firmware;           ///< "v3.1.0"; decides its interface. Empty: that of the metadata.
   nlohmann::json config_changes;  ///< To the metadata's settings; keys as of firmware 2 and later.
   std::int64_t reinitialise_ns = 1'000'000'000;
   std::int64_t boot_ns = 2'000'000'000;

@@ -164,8 +164,7 @@ void LoopedCapture::keep_whole_scans(const Survey& survey, std::int64_t scan_per
   // The mean scan, unless the times are no times.
   period_ns_ = count * scan_period_ns;
   if (count > 1) {
-    const std::int64_t measured_ns =
-        (last->second.first_time - first_time_) / (count - 1) * count;
+    const std::int64_t measured_ns = (last->second.first_time - first_time_) / (count - 1) * count;
     const bool plausible = measured_ns > period_ns_ / 4 && measured_ns < period_ns_ * 4;
     if (plausible) period_ns_ = measured_ns;
   }

@@ -48,10 +48,11 @@ class LoopedFeedTest : public testing::Test {
       }
       const auto packets = glint::test::encode(info_, scan);
       for (std::size_t i = 0; i < packets.size(); ++i, ++index) {
-        const bool outside = (k == 0 && i < packets.size() / 2) ||
-                             (k == scans - 1 && i >= packets.size() / 2);
-        const std::int64_t host_ns = 1'700'000'000'000'000'000 + index * 100'000'000 /
-                                         static_cast<std::int64_t>(packets.size());
+        const bool outside =
+            (k == 0 && i < packets.size() / 2) || (k == scans - 1 && i >= packets.size() / 2);
+        const std::int64_t host_ns =
+            1'700'000'000'000'000'000 +
+            index * 100'000'000 / static_cast<std::int64_t>(packets.size());
         if (index % 4 == 0) add_imu(host_ns, scan.column_time[16 * i]);
         if (!outside) packets_.push_back({{host_ns}, 7502, packets[i]});
       }

@@ -15,8 +15,8 @@ namespace glint::synth {
 /// What a network does to datagrams: each by chance, as a share of all (0 to 1).
 struct NetworkFaults {
   double loss = 0.0;
-  double duplicates = 0.0;  ///< Arrive a second time, up to three datagrams later.
-  double reordering = 0.0;  ///< Arrive one to three datagrams late.
+  double duplicates = 0.0;    ///< Arrive a second time, up to three datagrams later.
+  double reordering = 0.0;    ///< Arrive one to three datagrams late.
   std::int64_t delay_ns = 0;  ///< On the way, each of them; at least 0.
 };
 
