@@ -20,7 +20,9 @@ class Replay {
         clock_(daemon::stage_clock()),
         assembler_(info),
         frontend_(info, options.slam, clock_),
-        backend_(info, options.slam, options.session_file, clock_) {}
+        backend_(options.slam, options.session_file, clock_) {
+    backend_.use_sensor(info);
+  }
 
   ReplayResult run(PacketSource& source) {
     const std::int64_t start_ns = clock_.monotonic_ns();

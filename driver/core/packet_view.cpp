@@ -2,8 +2,6 @@
 // Copyright 2026 The Glint Authors
 #include "driver/core/packet_view.hpp"
 
-#include <algorithm>
-
 #include "driver/core/bytes.hpp"
 #include "driver/core/packet_fields.hpp"
 
@@ -16,27 +14,6 @@ std::optional<PacketView> refuse(PacketError why, PacketError* error) {
 }
 
 }  // namespace
-
-SensorTime ColumnView::time() const {
-  constexpr std::uint64_t kLatest_ns = 1ULL << 62U;
-  return {static_cast<std::int64_t>(
-      std::min(load<std::uint64_t>(data_ + kColumnTimeOffset), kLatest_ns))};
-}
-
-std::uint16_t ColumnView::measurement_id() const {
-  return load<std::uint16_t>(data_ + kMeasurementIdOffset);
-}
-
-std::uint32_t ColumnView::status() const {
-  if (!format_->legacy()) return load<std::uint16_t>(data_ + kColumnStatusOffset);
-  return load<std::uint32_t>(data_ + format_->column_bytes - sizeof(std::uint32_t));
-}
-
-std::uint16_t ColumnView::legacy_frame_id() const {
-  return load<std::uint16_t>(data_ + kLegacyFrameIdOffset);
-}
-
-const std::byte* ColumnView::pixels() const { return data_ + format_->layout->column_header_bytes; }
 
 std::uint32_t ColumnView::value(Channel channel, int row) const {
   const PixelField& field = format_->layout->field(channel);
@@ -107,11 +84,5 @@ PacketHealth PacketView::health() const {
 }
 
 bool PacketView::crc_matches() const { return !format_->legacy() && packet_crc_matches(bytes_); }
-
-ColumnView PacketView::column(int index) const {
-  const auto offset = static_cast<std::size_t>(format_->layout->packet_header_bytes) +
-                      static_cast<std::size_t>(index) * format_->column_bytes;
-  return {*format_, bytes_.data() + offset};
-}
 
 }  // namespace glint

@@ -43,8 +43,7 @@ class ScanAssembler {
   const LidarScan* next();
   /// The stream ended or fell silent: unfinished scans leave as they are, by next().
   void flush();
-
-  /// The sensor was replaced by one that sends the same packets, or its metadata read anew: whose
+  /// The sensor has restarted with the same packets, or was replaced by one of its kind: whose
   /// packets are taken from here on.
   void set_identity(const SensorInfo& info);
   /// What follows are packets of another layout. Drops what is unfinished or not taken, counts and
