@@ -66,6 +66,11 @@ constexpr std::array kKeys{
               "sensor.host once it has answered, else any. any: any."},
     ConfigKey{"sensor.bind_address", &at<&Config::sensor, &Config::Sensor::bind_address>, 0, 0, "",
               "", "Address of the network interface to listen on. Empty: all of them."},
+    ConfigKey{
+        "sensor.multicast_group", &at<&Config::sensor, &Config::Sensor::multicast_group>, 0, 0, "",
+        "",
+        "Multicast group that the sensor sends to, joined on the interface of bind_address or "
+        "after % in an IPv6 group. Empty: none."},
     ConfigKey{"sensor.lidar_port", &at<&Config::sensor, &Config::Sensor::lidar_port>, 0, kMaxPort,
               "", "", "UDP port of lidar packets. 0: the one of the metadata, else 7502."},
     ConfigKey{"sensor.imu_port", &at<&Config::sensor, &Config::Sensor::imu_port>, 0, kMaxPort, "",

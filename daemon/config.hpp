@@ -44,6 +44,7 @@ struct Config {
     std::string metadata_file;
     std::string source_address;
     std::string bind_address;
+    std::string multicast_group;
     int lidar_port = 0;
     int imu_port = 0;
     int rcvbuf_bytes = 8 << 20;

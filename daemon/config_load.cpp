@@ -8,29 +8,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
 #include "daemon/config.hpp"
+#include "driver/core/edit_distance.hpp"
 
 namespace glint::daemon {
 namespace {
 
 /// Keys whose function comes with a later version; a mistake in spelling is not what happened.
 constexpr std::array<std::string_view, 2> kLaterKeys = {"slam.sensor_height_m", "map.on_start"};
-
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i + 1);
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t substituted = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({substituted, row[j] + 1, diagonal + 1});
-    }
-  }
-  return row.back();
-}
 
 const ConfigKey& find_key(std::string_view name, const std::string& where) {
   const auto keys = config_keys();

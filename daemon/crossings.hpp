@@ -34,6 +34,7 @@ struct SourceHealth {
   std::atomic<SourceState> state{SourceState::kWaiting};
   std::atomic<std::uint64_t> packets{0};
   std::atomic<std::uint64_t> kernel_drops{0};
+  std::atomic<std::uint64_t> foreign{0};
   /// Steady clock at the last lidar packet; 0: none yet.
   std::atomic<std::int64_t> last_packet_ns{0};
   // Written before `state` becomes kEnded or kFailed, never after.

@@ -20,6 +20,7 @@
 
 #include "daemon/client.hpp"
 #include "daemon/test_room.hpp"
+#include "driver/test_udp.hpp"
 #include "pcap/capture_writer.hpp"
 
 namespace glint::daemon {
@@ -147,9 +148,13 @@ class GlintdTest : public testing::Test {
   /// The first answer for which `done` holds; null after ten seconds.
   template <class Done>
   Json poll_status(Done done) {
+    return poll_status(done, socket());
+  }
+  template <class Done>
+  Json poll_status(Done done, const std::string& address) {
     for (int i = 0; i < 500; ++i) {
       try {
-        Client client(socket());
+        Client client(address);
         Json status = client.call("get_status");
         if (done(status)) return status;
       } catch (const ClientError&) {
@@ -184,6 +189,58 @@ TEST_F(GlintdTest, ServesACaptureToItsEndAndStopsCleanly) {
   const fs::path session = status["session_file"].get<std::string>();
   EXPECT_TRUE(fs::exists(session));
   EXPECT_FALSE(fs::exists(session.string() + "-wal"));
+}
+
+TEST_F(GlintdTest, TwoSensorsOnOnePortReachTheirOwnDaemonsOnly) {
+  const SensorInfo info = test::room_sensor();
+  const fs::path metadata = directory_ / "room.json";
+  std::ofstream(metadata) << to_metadata_json(info);
+  const std::uint16_t port = test::free_port();
+  const auto serve = [&](const std::string& name, const std::string& sensor) {
+    fs::create_directories(directory_ / name);
+    return std::vector<std::string>{"--meta", metadata.string(),  //
+                                    "--set",  "server.listen=",
+                                    "--set",  "server.unix_socket=" + socket() + name,
+                                    "--set",  "state.directory=",
+                                    "--set",  "sensor.lidar_port=" + std::to_string(port),
+                                    "--set",  "sensor.imu_port=" + std::to_string(port),
+                                    "--set",  "sensor.bind_address=" + name,
+                                    "--set",  "sensor.source_address=" + sensor};
+  };
+  Process first(serve("127.0.0.4", "127.0.0.2"), directory_ / "127.0.0.4");
+  Process second(serve("127.0.0.5", "127.0.0.3"), directory_ / "127.0.0.5");
+  const auto any = [](const Json&) { return true; };
+  ASSERT_FALSE(poll_status(any, socket() + "127.0.0.4").is_null()) << first.log();
+  ASSERT_FALSE(poll_status(any, socket() + "127.0.0.5").is_null()) << second.log();
+
+  // Both sensors send to both, the second one scan less.
+  const test::UdpSender two("127.0.0.2");
+  const test::UdpSender three("127.0.0.3");
+  const std::vector<test::Bytes> packets = test::room_packets(info, 4);
+  const std::size_t fewer = packets.size() * 3 / 4;
+  for (std::size_t i = 0; i < packets.size(); ++i) {
+    for (const char* to : {"127.0.0.4", "127.0.0.5"}) {
+      ASSERT_TRUE(two.send(to, port, packets[i]));
+      ASSERT_TRUE(i >= fewer || three.send(to, port, packets[i]));
+    }
+  }
+  const auto counts = [&](std::size_t own, std::size_t foreign) {
+    return [=](const Json& status) {
+      return status["counters"]["lidar_packets"] == own &&
+             status["counters"]["foreign_packets"] == foreign;
+    };
+  };
+  EXPECT_FALSE(poll_status(counts(packets.size(), fewer), socket() + "127.0.0.4").is_null());
+  EXPECT_FALSE(poll_status(counts(fewer, packets.size()), socket() + "127.0.0.5").is_null());
+
+  auto third = serve("127.0.0.4", "127.0.0.2");
+  third[5] += "b";
+  EXPECT_EQ(exit_code(third), 1);
+  EXPECT_THAT(log_, AllOf(HasSubstr("port " + std::to_string(port) + " is held"),
+                          HasSubstr("bind address")));
+  third.insert(third.end(), {"--set", "sensor.multicast_group=192.0.2.1"});
+  EXPECT_EQ(exit_code(third), 1);
+  EXPECT_THAT(log_, HasSubstr("multicast group 192.0.2.1 is none"));
 }
 
 TEST_F(GlintdTest, ServesBeforeItsSensorHasPower) {

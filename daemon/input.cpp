@@ -93,6 +93,7 @@ UdpPorts udp_ports(const std::optional<SensorInfo>& info, const Config::Sensor& 
 std::unique_ptr<UdpSource> open_udp(UdpPorts ports, const Config::Sensor& sensor) {
   UdpSourceOptions options;
   options.bind_address = sensor.bind_address;
+  options.multicast_group = sensor.multicast_group;
   options.source_address = source_filter(sensor);
   options.lidar_port = ports.lidar;
   options.imu_port = ports.imu;

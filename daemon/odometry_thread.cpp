@@ -97,14 +97,14 @@ void OdometryThread::take_packet(const ReceivedPacket& received) {
   }
   const std::int64_t start_ns = steady_now_ns();
   // What became of the packet is in the assembler's counters.
-  const PacketError error = assembler.push(received.packet.bytes);
+  const PacketVerdict verdict = assembler.push(received.packet.bytes);
   decode_ns_ += steady_now_ns() - start_ns;
-  if (error != PacketError::kNone) note_refusal(received.packet.bytes, error);
+  note_refusal(received.packet.bytes, verdict);
 }
 
-void OdometryThread::note_refusal(std::span<const std::byte> packet, PacketError error) {
-  if (error == PacketError::kSize) state_.refused.bytes = packet.size();
-  if (error != PacketError::kSerial) return;
+void OdometryThread::note_refusal(std::span<const std::byte> packet, PacketVerdict verdict) {
+  if (verdict == PacketVerdict::kBadSize) state_.refused.bytes = packet.size();
+  if (verdict != PacketVerdict::kForeign) return;
   const auto view = PacketView::parse(stream_->assembler.format(), packet);
   if (view) state_.refused.serial_number = view->serial_number();
 }

@@ -47,7 +47,7 @@ class OdometryThread {
   };
 
   void take_packet(const ReceivedPacket& received);
-  void note_refusal(std::span<const std::byte> packet, PacketError error);
+  void note_refusal(std::span<const std::byte> packet, PacketVerdict verdict);
   void take_scans();
   void process_scans();
   void process(const LidarScan& scan);

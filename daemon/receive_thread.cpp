@@ -30,6 +30,7 @@ void ReceiveThread::run() {
     if (status == SourceStatus::kPacket) take_packet();
     tell_silence();
     health.kernel_drops.store(source_.kernel_drops(), std::memory_order_relaxed);
+    health.foreign.store(source_.foreign(), std::memory_order_relaxed);
   }
   health.notices = later_notices(source_, notices_before);
   if (status == SourceStatus::kError) health.error = source_.error();

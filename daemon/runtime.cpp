@@ -127,6 +127,7 @@ RuntimeStatus Runtime::status() const {
   status.sensor = sensor();
   status.packets_received = crossings_.source.packets.load();
   status.kernel_drops = crossings_.source.kernel_drops.load();
+  status.foreign = crossings_.source.foreign.load();
   status.packets = queue_status(crossings_.packets);
   status.keyframes = queue_status(crossings_.keyframes);
   return status;

@@ -54,6 +54,7 @@ struct RuntimeStatus {
   std::shared_ptr<const SensorInfo> sensor;  ///< Null while it is not known.
   std::uint64_t packets_received = 0;
   std::uint64_t kernel_drops = 0;
+  std::uint64_t foreign = 0;  ///< Datagrams of other senders.
   QueueStatus packets;
   QueueStatus keyframes;
 };

@@ -51,11 +51,7 @@ class Replay {
  private:
   void decode(const RawPacket& packet) {
     const slam::StageTimer timer(clock_, decode_times_, slam::Stage::kDecode);
-    if (packet.bytes.size() == assembler_.format().imu_packet_bytes) {
-      ++result_.imu_packets;
-      return;
-    }
-    // Strangers are counted by the assembler and the source.
+    // Whatever it is, the assembler counts it.
     static_cast<void>(assembler_.push(packet.bytes));
   }
 

@@ -39,6 +39,8 @@ class PacketSource {
   virtual void set_source_address(const std::string& address) { static_cast<void>(address); }
   /// Datagrams that the kernel dropped before they could be read, since start; 0 in replay.
   [[nodiscard]] virtual std::uint64_t kernel_drops() const { return 0; }
+  /// Datagrams from others than the sensor, since start; 0 where any sender is taken.
+  [[nodiscard]] virtual std::uint64_t foreign() const { return 0; }
   /// What a user should know of the source, a sentence each; more may come at its end.
   [[nodiscard]] virtual std::vector<std::string> notices() const { return {}; }
   /// A sentence on what broke after kError; empty otherwise.
