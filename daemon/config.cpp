@@ -182,8 +182,8 @@ Json value_json(const ConfigKey& key, Config& config) {
 std::string toml_value(const Json& value) {
   if (!value.is_array()) return value.dump();
   std::string list;
-  for (const Json& item : value) list += (list.empty() ? "[" : ", ") + item.dump();
-  return list + "]";
+  for (const Json& item : value) list += (list.empty() ? "" : ", ") + item.dump();
+  return fmt::format("[{}]", list);
 }
 
 /// A number as a user would write it: 0.5, 1e+06, 3.
