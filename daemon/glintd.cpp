@@ -47,6 +47,7 @@ int serve(const Options& options) {
     std::cout << to_toml(config);
     return 0;
   }
+  if (!config.sensor.host.empty()) static_cast<void>(sensor_link_options(config.sensor, {}));
   if (options.check_config) {
     std::cout << "glintd: the configuration is good\n";
     return 0;
