@@ -2,6 +2,7 @@
 // Copyright 2026 The Glint Authors
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "daemon/doctor/judgement.hpp"

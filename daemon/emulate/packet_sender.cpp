@@ -226,8 +226,9 @@ std::int64_t PacketSender::due_ns() const {
   return began_ns_ + std::llround(since_begin_ns);
 }
 
-/// Lidar packets that a sensor would have sent since this one fell silent.
+/// Lidar packets that a sensor would have sent since this one fell silent; none before it began.
 std::uint64_t PacketSender::silent_packets() const {
+  if (counts_.starts == 0) return 0;
   const double silent_s = static_cast<double>(steady_now_ns() - silent_since_ns_) * kSecondsPerNs;
   const double packets_per_s = feed_.lidar_packets_per_s() * options_.rate.value_or(1.0);
   return static_cast<std::uint64_t>(std::llround(std::max(silent_s, 0.0) * packets_per_s));

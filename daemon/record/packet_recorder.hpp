@@ -11,6 +11,7 @@
 
 #include "daemon/bounded_queue.hpp"
 #include "daemon/record/capture_parts.hpp"
+#include "driver/core/packet_format.hpp"
 #include "driver/core/sensor_info.hpp"
 #include "driver/session/sensor_session.hpp"
 #include "driver/udp_source.hpp"
