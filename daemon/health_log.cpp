@@ -8,19 +8,27 @@
 
 namespace glint::daemon {
 
+void HealthLog::look_at_source(const RuntimeStatus& status, EventLog& events) {
+  if (status.source == source_) return;
+  source_ = status.source;
+  spdlog::info("sensor: {}{}{}", to_string(source_), status.source_error.empty() ? "" : ": ",
+               status.source_error);
+  for (const std::string& notice : status.source_notices) spdlog::warn("{}", notice);
+  Json fields{{"state", to_string(source_)}};
+  if (!status.source_error.empty()) fields["message"] = status.source_error;
+  events.post({"sensor", 0, std::move(fields)});
+}
+
 void HealthLog::look(const RuntimeStatus& status, std::int64_t now_ns,
                      std::int64_t scan_period_ns) {
-  if (status.source != source_) {
-    source_ = status.source;
-    spdlog::info("sensor: {}{}{}", to_string(source_), status.source_error.empty() ? "" : ": ",
-                 status.source_error);
-  }
   const auto tracking = client_state(*status.snapshot, now_ns, scan_period_ns);
   if (tracking != tracking_ && limiter_.allow("tracking", now_ns)) {
     tracking_ = tracking;
     spdlog::info("tracking: {}", slam::to_string(tracking));
   }
   const AssemblerCounters& packets = status.snapshot->packets;
+  look_at_refusals(status, packets.bad_size + packets.bad_serial + status.snapshot->early_packets,
+                   now_ns);
   look_at_counter(
       "packets dropped by the kernel, its receive buffer was full (raise "
       "net.core.rmem_max)",
@@ -35,6 +43,14 @@ void HealthLog::look(const RuntimeStatus& status, std::int64_t now_ns,
                   status.snapshot->dropped_keyframes, now_ns);
   look_at_counter("keyframes missing in the session file (" + status.map->store_error + ")",
                   status.map->store_failures, now_ns);
+}
+
+void HealthLog::look_at_refusals(const RuntimeStatus& status, std::uint64_t refused,
+                                 std::int64_t now_ns) {
+  const std::string why = refused > refused_ ? refusal_sentence(status) : "";
+  if (why.empty() || !limiter_.allow("refusal", now_ns)) return;
+  spdlog::warn("{}", why);
+  refused_ = refused;
 }
 
 void HealthLog::look_at_counter(const std::string& what, std::uint64_t value, std::int64_t now_ns) {

@@ -16,6 +16,13 @@
 
 namespace glint::daemon {
 
+/// The last packet that was not taken because metadata say otherwise. Value type.
+struct RefusedPacket {
+  std::size_t bytes = 0;            ///< Of another size than the sensor's; 0: there was none.
+  std::uint64_t serial_number = 0;  ///< Of another sensor; 0: there was none.
+  std::uint32_t init_id = 0;        ///< Of another start of the sensor; 0: there was none.
+};
+
 /// What odometry knows after a scan. Immutable once published; any thread may read it.
 struct Snapshot {
   std::uint64_t scans = 0;  ///< Scans that gave an estimate.
@@ -27,6 +34,9 @@ struct Snapshot {
   TrajectoryHistory history;
 
   AssemblerCounters packets;
+  RefusedPacket refused;
+  /// Came before the metadata of the sensor, or of this start of it; dropped.
+  std::uint64_t early_packets = 0;
   std::uint64_t imu_packets = 0;
   std::uint64_t paused_scans = 0;       ///< Scans not used because of a pause.
   std::uint64_t dropped_keyframes = 0;  ///< The back end was too slow for them.

@@ -17,8 +17,9 @@ namespace glint {
 namespace {
 
 constexpr std::size_t kMaxFlows = 1024;
-/// Datagrams read after the sensor's first: some seconds, in which a second sensor shows itself.
-constexpr std::uint64_t kSurveyDatagrams = 4096;
+/// Datagrams read after the sensor's first: a second or two, in which a second sensor shows itself.
+/// They are read again afterwards, so more would be felt.
+constexpr std::uint64_t kSurveyDatagrams = 1024;
 
 using FlowKey = std::tuple<IpAddress, std::uint16_t, std::size_t, std::uint64_t>;
 

@@ -96,7 +96,8 @@ struct Frontend::Impl {
   ReferenceScan reference;  // The last good scan.
   ReferenceScan candidate;  // The last scan, while `reference` is not found again.
   int candidate_successes = 0;
-  int failures = 0;  // Scans since the last good one.
+  int failures = 0;    // Scans since the last good one.
+  Pose T_odom_origin;  // Of the first scan of a trajectory.
   std::vector<PointPair> pairs;
 
   OdometryEstimate estimate;
@@ -125,10 +126,19 @@ void Frontend::reset() {
   my.reference.valid = false;
   my.candidate.valid = false;
   my.failures = 0;
+  my.T_odom_origin = {};
   my.selector.reset();
   const std::uint32_t segment = my.estimate.segment + 1;
   my.estimate = {};
   my.estimate.segment = segment;
+}
+
+void Frontend::change_sensor(const SensorInfo& info) {
+  auto fresh = std::make_unique<Impl>(info, impl_->config, impl_->clock);
+  fresh->next_keyframe_id = impl_->next_keyframe_id;
+  fresh->estimate.segment = impl_->estimate.segment + 1;
+  fresh->T_odom_origin = impl_->estimate.T_odom_sensor;
+  impl_ = std::move(fresh);
 }
 
 const StageTimes& Frontend::stage_times() const { return impl_->times; }
@@ -145,7 +155,7 @@ void Frontend::Impl::run(const LidarScan& scan) {
   const bool usable = observe(scan);
   if (!reference.valid) {
     if (usable) initialize();
-    publish(scan, {});
+    publish(scan, T_odom_origin);
     if (usable) make_keyframe(scan);
     return;
   }
@@ -176,7 +186,7 @@ bool Frontend::Impl::observe(const LidarScan& scan) {
 
 void Frontend::Impl::initialize() {
   estimate.state = TrackingState::kInit;
-  become_reference(reference, {});
+  become_reference(reference, T_odom_origin);
 }
 
 // Registers the current scan with an older one; [Du & Beltrame 2023, eqs. 2-3].
@@ -248,7 +258,7 @@ void Frontend::Impl::coast(const LidarScan& scan) {
   if (estimate.state == TrackingState::kInit) {
     // Nothing has been tracked yet: begin anew with this scan if it is of use.
     if (current.size() >= kFewestKeypoints) initialize();
-    publish(scan, {});
+    publish(scan, T_odom_origin);
     return;
   }
   if (failures > config.max_coasted_scans) {

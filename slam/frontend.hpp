@@ -32,6 +32,9 @@ class Frontend {
   std::optional<Keyframe> take_keyframe();
   /// Forgets the trajectory: the next scan is the origin of a new odometry frame (segment + 1).
   void reset();
+  /// What follows are scans of another sensor, or of this one in another mode: they go on from the
+  /// last pose, without a link (segment + 1). Forgets what it saw, not the numbers of keyframes.
+  void change_sensor(const SensorInfo& info);
 
   /// What the last scan's stages took (kImage ... kRegistration, kTotal).
   [[nodiscard]] const StageTimes& stage_times() const;

@@ -192,5 +192,22 @@ TEST_F(FrontendTest, ResetBeginsANewOrigin) {
   EXPECT_EQ(frontend_.process((*scans_)[31]).state, TrackingState::kTracking);
 }
 
+TEST_F(FrontendTest, AnotherSensorGoesOnFromTheLastPoseInANewSegment) {
+  std::uint64_t keyframes = 0;
+  for (std::size_t i = 0; i < 30; ++i) {
+    frontend_.process((*scans_)[i]);
+    if (frontend_.take_keyframe()) ++keyframes;
+  }
+  const Pose last = frontend_.process((*scans_)[30]).T_odom_sensor;
+  ASSERT_FALSE(frontend_.take_keyframe()) << "the test counts on none here";
+  frontend_.change_sensor(simulator_->info());
+  const OdometryEstimate& estimate = frontend_.process((*scans_)[31]);
+  EXPECT_EQ(estimate.state, TrackingState::kInit);
+  EXPECT_EQ(estimate.segment, 1U);
+  EXPECT_EQ(estimate.T_odom_sensor.translation_m, last.translation_m);
+  EXPECT_EQ(frontend_.take_keyframe().value().id, keyframes);
+  EXPECT_EQ(frontend_.process((*scans_)[32]).state, TrackingState::kTracking);
+}
+
 }  // namespace
 }  // namespace glint::slam

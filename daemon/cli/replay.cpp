@@ -134,11 +134,12 @@ nlohmann::ordered_json summary_of(const ReplayResult& result, const SensorInfo& 
       {"interrupted", result.interrupted},
       {"peak_rss_mb", peak_rss_mb()}};
   summary["packets"] = {{"accepted", packets.packets},
-                        {"imu", result.imu_packets},
+                        {"imu", packets.imu_packets},
                         {"missing", packets.missing_packets},
                         {"late", packets.late_packets},
                         {"duplicate", packets.duplicate_packets},
                         {"bad", packets.bad_size + packets.bad_type + packets.bad_serial},
+                        {"corrupt", packets.corrupt_packets},
                         {"bad_columns", packets.bad_column},
                         {"sensor_restarts", packets.restarts}};
   summary["tracking"] = {{"keypoints_mean", totals.keypoints_mean},

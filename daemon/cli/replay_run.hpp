@@ -28,7 +28,6 @@ struct ReplayResult {
   std::shared_ptr<const slam::MapSnapshot> map;
   slam::MapCorrection correction;
   AssemblerCounters packets;
-  std::uint64_t imu_packets = 0;
   std::uint64_t store_failures = 0;
   std::string store_error;
   std::string source_error;  ///< Why the capture could not be read to its end; empty if it was.

@@ -6,10 +6,9 @@
 #include <cstdint>
 
 #include "driver/core/bytes.hpp"
-#include "driver/core/crc64.hpp"
 #include "driver/core/imu_packet_layout.hpp"
+#include "driver/core/packet_fields.hpp"
 #include "driver/core/packet_format.hpp"
-#include "driver/core/profile_table.hpp"
 
 namespace glint {
 namespace {
@@ -28,16 +27,11 @@ bool finite(const ImuSample& sample) {
   return sample.acceleration_mps2.allFinite() && sample.angular_rate_radps.allFinite();
 }
 
-bool crc_matches(std::span<const std::byte> packet) {
-  const auto covered = packet.first(packet.size() - kImuCrcBytes);
-  return load<std::uint64_t>(covered.data() + covered.size()) == crc64(covered);
-}
-
 bool parse_nmea_packet(const ImuPacketFormat& format, std::span<const std::byte> bytes,
                        std::vector<ImuSample>& samples, CrcCheck crc) {
   if (bytes.size() != format.packet_bytes) return false;
   if (load<std::uint16_t>(bytes.data()) != kImuPacketType) return false;
-  if (crc == CrcCheck::kRequired && !crc_matches(bytes)) return false;
+  if (crc == CrcCheck::kRequired && !packet_crc_matches(bytes)) return false;
   const std::byte* from = bytes.data() + kImuHeaderBytes + kImuNmeaBytes;
   for (int i = 0; i < format.measurements; ++i, from += kImuMeasurementBytes) {
     if ((load<std::uint16_t>(from + kImuStatusOffset) & 1U) == 0) continue;

@@ -124,7 +124,7 @@ EmulatedAnswer EmulatedSensor::answer_sensor(const EmulatedRequest& request, con
                {"input_current_ma", 700},
                {"internal_temperature_deg_c", 45},
                {"phase_lock_status", "DISABLED"},
-               {"timestamp_ns", clock_.monotonic_ns() + clock_offset_ns_}});
+               {"timestamp_ns", sensor_time_ns()}});
   }
   const bool commands = form_ == ApiForm::kCommandGroups || form_ == ApiForm::kCommands;
   if (commands && path->starts_with("cmd/")) return answer_command(query, request.client_address);
