@@ -28,8 +28,9 @@ run_target() {
   local log=build-fuzz/findings/$target.log
   mkdir -p "build-fuzz/corpus/$target" build-fuzz/findings
   local status=0
+  # The timeout is of the wall clock, and the machine may be busy: inputs take milliseconds.
   "build-fuzz/tests/fuzz/fuzz_$target" -max_total_time="$seconds" -max_len="$(max_len "$target")" \
-    -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
+    -timeout=60 -rss_limit_mb=2048 -print_final_stats=1 \
     -artifact_prefix="build-fuzz/findings/$target-" \
     "build-fuzz/corpus/$target" "tests/fuzz/corpus/$target" >"$log" 2>&1 || status=$?
   local executions
