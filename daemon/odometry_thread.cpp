@@ -246,6 +246,7 @@ void OdometryThread::publish_counters() {
 
 void OdometryThread::tell_stream(const Stream& stream) {
   state_.packets = stream.assembler.counters();
+  state_.packet_health = stream.assembler.health();
   state_.clock = stream.clock_model.status();
   // Without times of arrival there is none of this machine's to tell.
   const bool unknown = stream.info->clock == ClockSource::kHost && !state_.clock.known;
