@@ -118,7 +118,8 @@ class BlockDecoder {
   template <int kQuad>
   static void decode_quad(const ColumnBlock& block, const std::byte* tile, std::size_t at) {
     Row word[4];
-    transpose(tile + kQuad * kQuadBytes, block.column_bytes, word);
+    constexpr int kOffset = kQuad * kQuadBytes;
+    transpose(tile + kOffset, block.column_bytes, word);
     decode_word<kQuad * 4>(block, word[0], at);
     decode_word<kQuad * 4 + 1>(block, word[1], at);
     decode_word<kQuad * 4 + 2>(block, word[2], at);
