@@ -182,7 +182,7 @@ TEST(MountTest, GravityIsComparedWithTheMounting) {
   const ImuPacketWriter writer(daemon.info());
   Bytes packet;
   for (int i = 0; i < 120; ++i) {
-    const SensorTime time{1'000'000'000 + i * 10'000'000};
+    const SensorTime time{1'000'000'000 + i * std::int64_t{10'000'000}};
     const ImuSample sample{time, time, {0.0, 0.0, 9.81}, Eigen::Vector3d::Zero()};
     writer.write({&sample, 1}, 0, 0, packet);
     daemon.source().feed(packet);
