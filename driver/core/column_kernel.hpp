@@ -17,7 +17,7 @@ constexpr int kBlockColumns = 16;
 
 /// Neighbouring columns of a packet, and where in the scan they go. Plain pointers: a file compiled
 /// for newer processors must not instantiate a library's inline functions, for the linker might
-/// give those to everyone.
+/// give those to everyone, nor see types of Eigen, which lie in memory as the compiler's flags say.
 struct ColumnBlock {
   const std::byte* pixels;   ///< First pixel of the first column.
   std::size_t column_bytes;  ///< From a column to the next.

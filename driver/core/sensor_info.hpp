@@ -12,34 +12,12 @@
 #include <vector>
 
 #include "driver/core/error.hpp"
+#include "driver/core/profile_layout.hpp"
 
 namespace glint {
 
-/// What a lidar packet's pixels hold (sensor manual, "lidar data packet format").
-enum class LidarProfile {
-  kLegacy,
-  kRng19Rfl8Sig16Nir16,
-  kRng19Rfl8Sig16Nir16Dual,
-  kRng15Rfl8Nir8,
-  kRng15Rfl8Win8,
-  kRng15Rfl8Nir8Dual,
-  kFusaRng15Rfl8Nir8Dual,
-  kFiveWordPixel,
-  kRng15Rfl8Nir8Zone16,
-  kRng19Rfl8Sig16Nir16Zone16,
-  kRng19Rfl8Sig16Zone16Dual,
-  kRng19Rfl8Sig16Nir16Rgb16,
-  kRng19Rfl8Sig16Nir16Rgb16Dual,
-};
-
-/// All of them, in that order.
+/// All lidar profiles, in the order of LidarProfile.
 std::span<const LidarProfile> lidar_profiles();
-
-/// Where the header of lidar packets, which legacy ones lack, has its fields.
-enum class PacketHeader {
-  kStandard,  ///< 16-bit type and frame id.
-  kFusa,      ///< 8-bit type, 32-bit frame id, and ids elsewhere.
-};
 
 /// The profile's name as sensors spell it, e.g. "RNG19_RFL8_SIG16_NIR16".
 std::string_view to_string(LidarProfile profile);
