@@ -44,7 +44,7 @@ std::vector<Bytes> stepped_packets(const SensorInfo& info, int count, int step_s
       for (SensorTime& time : scan.column_time) {
         if (static_cast<int>(scan.frame_id) >= step_scan) time.ns += step_ns;
       }
-      for (Bytes& encoded : encode(info, scan)) packets.push_back(std::move(encoded));
+      for (Bytes& encoded : test::encode(info, scan)) packets.push_back(std::move(encoded));
     }
   }
   return packets;
