@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "daemon/clock_settings.hpp"
+
 namespace glint::daemon {
 namespace {
 
@@ -32,7 +34,7 @@ QueueStatus queue_status(const BoundedQueue<T>& queue) {
 
 Runtime::Runtime(const SensorInfo& info, const Config& config, std::unique_ptr<PacketSource> source,
                  RuntimeOptions options)
-    : info_(info),
+    : info_(with_clock_settings(info, config.sensor)),
       config_(config),
       options_(std::move(options)),
       source_(std::move(source)),
@@ -45,8 +47,9 @@ void Runtime::start(ScanListener on_scan) {
   const ReceiveThread::Options receive{options_.lossless,
                                        std::max(3 * info_.scan_period_ns(), kMinSilenceNs)};
   receive_ = std::make_unique<ReceiveThread>(*source_, receive, crossings_, receive_heartbeat_);
-  odometry_ = std::make_unique<OdometryThread>(info_, config_, options_.lossless, crossings_,
-                                               odometry_heartbeat_, std::move(on_scan));
+  odometry_ =
+      std::make_unique<OdometryThread>(info_, config_, options_.lossless, crossings_,
+                                       odometry_heartbeat_, *options_.events, std::move(on_scan));
   spawn("odometry", [this] { odometry_->run(); });
   spawn("backend", [this] { backend_.run(); });
   spawn("worker", [this] { work(); });

@@ -51,6 +51,7 @@ struct PacketFormat {
   int columns_per_packet;
   int pixels_per_column;
   PacketHeader header;
+  std::int64_t stamp_excess_ns;  ///< As SensorInfo::stamp_excess_ns().
   std::size_t column_bytes;
   std::size_t packet_bytes;
   /// Of the sensor's IMU packets, which older firmware marks by nothing but their size.

@@ -20,8 +20,8 @@ std::optional<PacketView> refuse(PacketError why, PacketError* error) {
 
 SensorTime ColumnView::time() const {
   constexpr std::uint64_t kLatest_ns = 1ULL << 62U;
-  return {static_cast<std::int64_t>(
-      std::min(load<std::uint64_t>(data_ + kColumnTimeOffset), kLatest_ns))};
+  const auto stamp_ns = std::min(load<std::uint64_t>(data_ + kColumnTimeOffset), kLatest_ns);
+  return {static_cast<std::int64_t>(stamp_ns) - format_->stamp_excess_ns};
 }
 
 std::uint16_t ColumnView::measurement_id() const {

@@ -25,7 +25,8 @@ class ColumnView {
  public:
   ColumnView(const PacketFormat& format, const std::byte* data) : format_(&format), data_(data) {}
 
-  /// At most 2^62 ns (146 years), so that differences and small steps from it cannot overflow.
+  /// The stamp less the format's excess; on the wire at most 2^62 ns (146 years), so that
+  /// differences and small steps from it cannot overflow.
   [[nodiscard]] SensorTime time() const;
   [[nodiscard]] std::uint16_t measurement_id() const;
   /// The status word as on the wire: 32 bits legacy (all ones is good), 16 bits later (bit 0).

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "driver/core/clock_source.hpp"
 #include "driver/core/error.hpp"
 
 namespace glint {
@@ -87,12 +88,23 @@ struct SensorInfo {
   int imu_measurements_per_packet = 8;
   int imu_packets_per_frame = 8;
 
+  /// What sets the sensor's clock; the oscillator when the metadata does not say.
+  ClockSource clock = ClockSource::kInternal;
+  /// TAI minus UTC, s: what a user wants to be taken off the stamps of a PTP clock. Not in
+  /// metadata.
+  int tai_utc_offset_s = 0;
+
   int lidar_port = 7502;  ///< UDP destination port of lidar packets; 7502 when not said.
   int imu_port = 7503;    ///< UDP destination port of IMU packets; 7503 when not said.
 
   /// Things a user should know but that do not stop anything, one sentence each.
   std::vector<std::string> warnings;
 
+  /// What is subtracted from every stamp on the wire, of lidar columns and IMU measurements, ns.
+  [[nodiscard]] std::int64_t stamp_excess_ns() const {
+    constexpr std::int64_t kSecond_ns = 1'000'000'000;
+    return clock == ClockSource::kPtp ? tai_utc_offset_s * kSecond_ns : 0;
+  }
   /// Nominal time between two scans, ns.
   [[nodiscard]] std::int64_t scan_period_ns() const {
     return static_cast<std::int64_t>(1e9 / scan_rate_hz);
