@@ -5,6 +5,7 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <boost/asio/io_context.hpp>
 #include <filesystem>
 #include <iostream>
 
@@ -54,7 +55,10 @@ int serve(const Options& options) {
   }
   set_up_logging(config.log.level);
   spdlog::info("glintd {}", kVersion);
-  Service service(config, open_input(options.input, config),
+  // Its end would wait for a name that is being looked up, which takes the resolver half a minute
+  // when no server answers: it is left to the process's end.
+  static boost::asio::io_context& io = *new boost::asio::io_context(1);
+  Service service(io, config, open_input(options.input, config),
                   [&options] { return read_config(options); });
   return service.run();
 }

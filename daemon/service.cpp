@@ -36,9 +36,10 @@ RuntimeOptions with_session(RuntimeOptions options, const Config& config) {
 
 }  // namespace
 
-Service::Service(const Config& config, Input input, Reload reload)
+Service::Service(boost::asio::io_context& io, const Config& config, Input input, Reload reload)
     : config_(config),
       reload_(std::move(reload)),
+      io_(io),
       runtime_(input.info, config, std::move(input.source), with_session(input.options, config)),
       api_(io_, runtime_, config),
       server_(io_, api_, config),

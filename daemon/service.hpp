@@ -25,8 +25,8 @@ class Service {
   /// Reads the configuration again, for SIGHUP. @throws ConfigError.
   using Reload = std::function<Config()>;
 
-  /// Listens from here on. @throws as open_input(), Server and Runtime do.
-  Service(const Config& config, Input input, Reload reload);
+  /// Listens from here on. `io` must outlive it. @throws as open_input(), Server and Runtime do.
+  Service(boost::asio::io_context& io, const Config& config, Input input, Reload reload);
 
   /// Serves until SIGTERM, SIGINT or a fault. Returns the exit code: 0, or 1 after a fault.
   int run();
@@ -40,7 +40,7 @@ class Service {
 
   Config config_;
   const Reload reload_;
-  boost::asio::io_context io_{1};
+  boost::asio::io_context& io_;
   Runtime runtime_;
   std::optional<SensorLink> sensor_;  ///< Null without a session with the sensor.
   Api api_;

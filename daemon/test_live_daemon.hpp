@@ -179,9 +179,9 @@ class LiveDaemon {
   }
 
   /// Runs something on the thread of sensor and session.
-  template <class Function>
-  auto in_loop(Function function) {
-    std::packaged_task<std::invoke_result_t<Function>()> task(std::move(function));
+  template <class Function, class Result = std::invoke_result_t<Function>>
+  Result in_loop(Function function) {
+    std::packaged_task<Result()> task(std::move(function));
     auto result = task.get_future();
     boost::asio::post(io_, [&task] { task(); });
     return result.get();
@@ -195,7 +195,8 @@ class LiveDaemon {
   void raise_alert(const std::string& id, const std::string& category, const std::string& message) {
     in_loop([&] { emulator_->raise_alert(id, category, message); });
   }
-  /// The sensor is set to another mode by others, which makes it restart.
+  /// The sensor is set to another mode by others, which makes it restart; its packets come before
+  /// it answers questions.
   void replace_sensor(const SensorInfo& info, const nlohmann::json& metadata) {
     in_loop([&] {
       emulator_options_.http_port = emulator_->http_port();
@@ -203,8 +204,12 @@ class LiveDaemon {
       emulator_options_.sensor.first_init_id = emulator_->sensor().stream().init_id + 100;
       set_flash(metadata);
       emulator_.reset();
-      streamer_.set_sensor(info);
+      streamer_.set_stream({});
+    });
+    streamer_.set_sensor(info);
+    in_loop([&] {
       make_emulator();
+      emulator_->inject({emulator::ControlFault::kSlow, 1, {}});
     });
   }
   emulator::EmulatorCounts sensor_counts() {
@@ -244,6 +249,7 @@ class LiveDaemon {
     daemon::SensorLinkOptions options = daemon::sensor_link_options(config_.sensor, {port_, port_});
     options.take_metadata = take_metadata;
     options.address.tcp_port = emulator_->tcp_port();
+    options.timeouts = {std::chrono::milliseconds(200), std::chrono::milliseconds(200)};
     SessionTimes& times = options.session.times;
     times.first_retry_ns = 5 * kMs_ns;
     times.longest_retry_ns = 50 * kMs_ns;

@@ -139,6 +139,18 @@ TEST_F(ClockJumpTest, LossAndSilenceAreNone) {
   EXPECT_EQ(stream.counters().clock_jumps, 0U);
 }
 
+// Then neither ids nor times go on; what comes after passes for a new count.
+TEST_F(ClockJumpTest, BackwardsInAnOutageCostsTwoPackets) {
+  auto sent = sent_scans(0, -900 * kSecond_ns);
+  sent[8].frame_id = 300;
+  sent[9].frame_id = 301;
+  Stream stream(info);
+  for (const int k : {4, 5, 8, 9}) stream.push_all(encode(info, sent[static_cast<std::size_t>(k)]));
+  EXPECT_EQ(stream.scans.size(), 4U);
+  EXPECT_EQ(stream.counters().stray_packets, 2U);
+  EXPECT_EQ(stream.counters().packets, 4U * kPackets - 2);
+}
+
 TEST_F(ClockJumpTest, RestartedSensorsClockBeginsAnew) {
   Stream stream(info);
   stream.push_all(packets(7000));
@@ -149,21 +161,23 @@ TEST_F(ClockJumpTest, RestartedSensorsClockBeginsAnew) {
   EXPECT_TRUE(stream.scans[1].sensor_restarted);
 }
 
-// A sensor that turns at half the rate of its metadata, seen through a window.
+// A sensor that turns at half the rate of its metadata, whole and seen through a window.
 TEST_F(ClockJumpTest, OtherRateThanTheMetadatasIsNone) {
-  info.column_window = {128, 383};
-  Stream stream(info);
-  for (std::uint32_t k = 0; k < 10; ++k) {
-    LidarScan slow = scan(k);
-    for (int m = 0; m < kColumns; ++m) {
-      const std::int64_t t0 = nominal_time(info, 0, 0).ns;
-      slow.column_time[static_cast<std::size_t>(m)].ns =
-          t0 + 2 * (nominal_time(info, k, m).ns - t0);
+  for (const auto& window : {std::pair(0, kColumns - 1), std::pair(128, 383)}) {
+    info.column_window = window;
+    Stream stream(info);
+    for (std::uint32_t k = 0; k < 10; ++k) {
+      LidarScan slow = scan(k);
+      for (int m = 0; m < kColumns; ++m) {
+        const std::int64_t t0 = nominal_time(info, 0, 0).ns;
+        slow.column_time[static_cast<std::size_t>(m)].ns =
+            t0 + 2 * (nominal_time(info, k, m).ns - t0);
+      }
+      stream.push_all(encode(info, slow));
     }
-    stream.push_all(encode(info, slow));
+    EXPECT_EQ(stream.scans.size(), 10U);
+    EXPECT_EQ(stream.counters().clock_jumps, 0U);
   }
-  EXPECT_EQ(stream.scans.size(), 10U);
-  EXPECT_EQ(stream.counters().clock_jumps, 0U);
 }
 
 }  // namespace

@@ -22,7 +22,6 @@ class CrcTrust {
     }
     return matches || !trusted_;
   }
-  [[nodiscard]] bool trusted() const { return trusted_; }
 
  private:
   bool trusted_ = false;

@@ -55,8 +55,6 @@ class PacketGate {
   /// State and alerts of the sensor as the latest lidar packet has them; null before the first one
   /// and for legacy packets, which do not say.
   [[nodiscard]] const std::optional<PacketHealth>& health() const { return health_; }
-  /// Whether a lidar packet with a wrong CRC would be rejected.
-  [[nodiscard]] bool crc_trusted() const { return kinds_[0].crc.trusted(); }
 
  private:
   // A type of packet that the sensor sends.

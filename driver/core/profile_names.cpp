@@ -41,18 +41,19 @@ constexpr std::array kImuProfileNames{
 constexpr std::array kUsualBeams{16, 32, 64, 128, 256};
 constexpr int kUsualColumnsPerPacket = 16;
 
-std::size_t usual_packet_bytes(const ProfileLayout& layout, int beams) {
-  const int column =
+int usual_packet_bytes(const ProfileLayout& layout, int beams) {
+  const int column_bytes =
       layout.column_header_bytes + beams * layout.pixel_bytes + layout.column_footer_bytes;
-  return static_cast<std::size_t>(layout.packet_header_bytes + kUsualColumnsPerPacket * column +
-                                  layout.packet_footer_bytes);
+  return layout.packet_header_bytes + kUsualColumnsPerPacket * column_bytes +
+         layout.packet_footer_bytes;
 }
 
 /// "RNG15_RFL8_NIR8, RNG15_RFL8_WIN8 with 128 beams"; empty if there is none.
 std::string profiles_with(int beams, std::size_t packet_bytes) {
   std::string list;
   for (const ProfileName& known : kProfileNames) {
-    if (usual_packet_bytes(profile_layout(known.profile), beams) != packet_bytes) continue;
+    const int bytes = usual_packet_bytes(profile_layout(known.profile), beams);
+    if (static_cast<std::size_t>(bytes) != packet_bytes) continue;
     list += fmt::format("{}{}", list.empty() ? "" : ", ", known.name);
   }
   return list.empty() ? list : fmt::format("{} with {} beams", list, beams);
