@@ -38,7 +38,7 @@ std::vector<Bytes> stepped_packets(const SensorInfo& info, int count, int step_s
   ScanAssembler assembler(info);
   std::vector<Bytes> packets;
   for (const Bytes& packet : room_packets(info, count)) {
-    EXPECT_EQ(assembler.push(packet), PacketError::kNone);
+    EXPECT_EQ(assembler.push(packet), PacketVerdict::kLidar);
     while (const LidarScan* assembled = assembler.next()) {
       LidarScan scan = *assembled;
       for (SensorTime& time : scan.column_time) {
