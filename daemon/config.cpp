@@ -32,7 +32,8 @@ constexpr std::array kKeys{
               "Have the sensor keep in its flash what it is told; else it lasts until it loses "
               "power."},
     ConfigKey{"sensor.udp_dest", &at<&Config::sensor, &Config::Sensor::udp_dest>, 0, 0, "", "",
-              "Where the sensor sends its packets: an IP address. auto: this machine. Empty: as "
+              "Where the sensor sends its packets: an IP address. auto: this machine, or "
+              "multicast_group. Empty: as "
               "the sensor has it."},
     ConfigKey{"sensor.lidar_mode", &at<&Config::sensor, &Config::Sensor::lidar_mode>, 0, 0, "", "",
               "Columns a turn and turns a second: 512x10, 1024x10, 2048x10, ... Empty: as the "

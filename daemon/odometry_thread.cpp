@@ -194,7 +194,10 @@ void OdometryThread::publish_counters() {
 }
 
 std::shared_ptr<const Snapshot> OdometryThread::publish() {
-  if (stream_) state_.packets = stream_->assembler.counters();
+  if (stream_) {
+    state_.packets = stream_->assembler.counters();
+    state_.packet_health = stream_->assembler.health();
+  }
   auto snapshot = std::make_shared<const Snapshot>(state_);
   crossings_.snapshot.store(snapshot);
   published_ns_ = steady_now_ns();

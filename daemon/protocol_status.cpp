@@ -152,6 +152,7 @@ Json status_json(const RuntimeStatus& runtime, const ServiceStatus& service, std
   if (const std::string error = sensor_error(runtime, service); !error.empty()) {
     out["sensor_error"] = error;
   }
+  if (snapshot.packet_health) out["packet_health"] = packet_health_json(*snapshot.packet_health);
   if (service.session != nullptr) out["sensor_session"] = session_json(*service.session, now_ns);
   if (snapshot.estimate) {
     put_time(out, snapshot.estimate->stamp);

@@ -35,6 +35,7 @@ struct Snapshot {
 
   AssemblerCounters packets;
   RefusedPacket refused;
+  std::optional<PacketHealth> packet_health;  ///< Of the latest lidar packet that says it.
   /// Came before the metadata of the sensor, or of this start of it; dropped.
   std::uint64_t early_packets = 0;
   std::uint64_t imu_packets = 0;
