@@ -218,7 +218,10 @@ seconds = 3.0
   }
   // Off for 0.2 s and 0.3 s at 320 packets a second.
   EXPECT_NEAR(report["not_sent"].get<double>(), 0.5 * 320, 64.0);
-  EXPECT_EQ(std::count(seen.frame_ids.begin(), seen.frame_ids.end(), 0U), 3);
+  const auto first_scans = std::count(seen.frame_ids.begin(), seen.frame_ids.end(), 0U);
+  // Legacy packets do not tell of a restart; so soon after a start, one costs the first scan.
+  EXPECT_GE(first_scans, GetParam() == LidarProfile::kLegacy ? 1 : 3);
+  EXPECT_LE(first_scans, 3);
 }
 
 TEST_P(EmulatedSensorTest, EndsWithASummaryAtASignal) {
