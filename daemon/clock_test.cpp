@@ -38,13 +38,13 @@ std::vector<Bytes> stepped_packets(const SensorInfo& info, int count, int step_s
   ScanAssembler assembler(info);
   std::vector<Bytes> packets;
   for (const Bytes& packet : room_packets(info, count)) {
-    EXPECT_EQ(assembler.push(packet), PacketError::kNone);
+    EXPECT_EQ(assembler.push(packet), PacketVerdict::kLidar);
     while (const LidarScan* assembled = assembler.next()) {
       LidarScan scan = *assembled;
       for (SensorTime& time : scan.column_time) {
         if (static_cast<int>(scan.frame_id) >= step_scan) time.ns += step_ns;
       }
-      for (Bytes& encoded : encode(info, scan)) packets.push_back(std::move(encoded));
+      for (Bytes& encoded : test::encode(info, scan)) packets.push_back(std::move(encoded));
     }
   }
   return packets;
@@ -182,7 +182,7 @@ TEST(MountTest, GravityIsComparedWithTheMounting) {
   const ImuPacketWriter writer(daemon.info());
   Bytes packet;
   for (int i = 0; i < 120; ++i) {
-    const SensorTime time{1'000'000'000 + i * 10'000'000};
+    const SensorTime time{1'000'000'000 + i * std::int64_t{10'000'000}};
     const ImuSample sample{time, time, {0.0, 0.0, 9.81}, Eigen::Vector3d::Zero()};
     writer.write({&sample, 1}, 0, 0, packet);
     daemon.source().feed(packet);

@@ -3,8 +3,11 @@
 //
 // A stream of datagrams into the assembler, for every profile. The input says what comes: packets
 // as a sensor sends them, such packets with bytes overwritten, and any bytes.
+#include <algorithm>
+#include <optional>
 #include <random>
 
+#include "driver/core/imu_packet_writer.hpp"
 #include "driver/core/packet_view.hpp"
 #include "driver/core/packet_writer.hpp"
 #include "driver/core/scan_assembler.hpp"
@@ -19,7 +22,7 @@ using glint::SensorInfo;
 using glint::fuzz::ByteFeed;
 using glint::fuzz::require;
 
-constexpr std::size_t kMaxDatagrams = 400;
+constexpr std::size_t kMaxSteps = 400;
 
 SensorInfo choose_sensor(ByteFeed& feed) {
   const auto profiles = glint::lidar_profiles();
@@ -28,55 +31,72 @@ SensorInfo choose_sensor(ByteFeed& feed) {
   const int columns = 16 << (size & 3U);
   SensorInfo info =
       glint::test::make_sensor(profile, 1 + static_cast<int>(size >> 2U & 7U), columns);
-  info.columns_per_packet = 1 << (size >> 5U);
-  if (info.columns_per_packet > 16) info.columns_per_packet = 16;
+  info.columns_per_packet = std::min(1 << (size >> 5U), 16);
   const unsigned flags = feed.byte();
   if ((flags & 1U) != 0) info.header = glint::PacketHeader::kFusa;
   if ((flags & 2U) != 0) info.serial_number.clear();
   if ((flags & 4U) != 0) info.init_id = 0;
+  if ((flags & 16U) != 0) info.imu_profile = glint::ImuProfile::kAccel32Gyro32Nmea;
   if ((flags & 8U) != 0) {
     info.column_window = {feed.byte() % columns, feed.byte() % columns};
   }
   return info;
 }
 
-/// The sensor's packets, two of each place of a scan: what is mutated must not be guessed.
+/// The sensor's packets, for what is only damaged must not be guessed whole.
 class Sender {
  public:
   explicit Sender(const SensorInfo& info)
-      : info_(info), writer_(info), random_(1), scan_(glint::test::random_scan(info, 0, random_)) {}
+      : info_(info),
+        writer_(info),
+        imu_writer_(info),
+        random_(1),
+        scan_(glint::test::random_scan(info, 0, random_)) {}
 
-  /// Packet `index` of a scan, its columns' times as long after the start as the scan's number.
-  void write(std::uint16_t frame, int index, std::vector<std::byte>& out) {
+  /// A packet of a scan, its columns' times as long after the start as the scan's number.
+  void write_lidar(std::uint32_t frame, int index, std::vector<std::byte>& out) {
     scan_.frame_id = frame;
     for (int m = 0; m < info_.columns_per_frame; ++m) {
       scan_.column_time[static_cast<std::size_t>(m)] = glint::test::nominal_time(info_, frame, m);
     }
     writer_.write(scan_, index % writer_.packets_per_scan(), out);
   }
+  void write_imu(std::vector<std::byte>& out) const {
+    const auto count = static_cast<std::size_t>(imu_writer_.format().measurements);
+    imu_writer_.write(std::vector<glint::ImuSample>(count), 1, 0, out);
+  }
 
  private:
   const SensorInfo info_;
   const glint::PacketWriter writer_;
+  const glint::ImuPacketWriter imu_writer_;
   std::mt19937 random_;
   LidarScan scan_;
 };
 
-void next_datagram(ByteFeed& feed, Sender& sender, std::size_t packet_bytes,
-                   std::vector<std::byte>& out) {
+/// What the input does next.
+enum class Step { kDatagram, kFlush, kOtherIdentity, kOtherSensor };
+
+Step next_step(ByteFeed& feed, Sender& sender, std::size_t packet_bytes,
+               std::vector<std::byte>& out) {
   const unsigned kind = feed.byte();
   if ((kind & 3U) == 0) {
     const auto bytes = feed.bytes(feed.word() % (2 * packet_bytes));
     out.assign(bytes.begin(), bytes.end());
-    return;
+    return Step::kDatagram;
   }
-  const std::uint16_t frame = (kind & 4U) != 0 ? feed.word() : feed.byte();
-  sender.write(frame, feed.byte(), out);
-  if ((kind & 3U) == 1) return;
+  if ((kind & 3U) == 3) {
+    sender.write_imu(out);
+    return static_cast<Step>(kind >> 2U & 3U);
+  }
+  const std::uint32_t frame = (kind & 4U) != 0 ? feed.word() * 0x1'0001U : feed.byte();
+  sender.write_lidar(frame, feed.byte(), out);
+  if ((kind & 3U) == 1) return Step::kDatagram;
   for (unsigned i = 0; i < 1 + (kind >> 4U); ++i) {
     const std::size_t at = feed.word() % out.size();
     out[at] = static_cast<std::byte>(feed.byte());
   }
+  return Step::kDatagram;
 }
 
 void look_at(const glint::PacketFormat& format, std::span<const std::byte> datagram) {
@@ -127,27 +147,50 @@ void check_scan(const LidarScan& scan, const glint::PacketFormat& format) {
   }
 }
 
-/// Takes what is ready, and counts it.
-class Receiver {
+/// An assembler, what is done to it, and what it must keep to.
+class Stream {
  public:
-  explicit Receiver(const glint::ScanAssembler& assembler) : assembler_(assembler) {}
+  Stream(SensorInfo info, glint::AssemblerOptions options)
+      : info_(std::move(info)), assembler_(info_, options) {}
 
-  void take(glint::ScanAssembler& assembler) {
-    while (const LidarScan* scan = assembler.next()) {
+  [[nodiscard]] const glint::PacketFormat& format() const { return assembler_.format(); }
+
+  void push(std::span<const std::byte> datagram) {
+    look_at(format(), datagram);
+    assembler_.push(datagram);
+    ++pushed_;
+  }
+  void flush() { assembler_.flush(); }
+  void change_identity() {
+    info_.init_id ^= 1U;
+    assembler_.set_identity(info_);
+  }
+  /// Drops what was not taken.
+  Sender change_sensor() {
+    take();
+    info_ = glint::test::make_sensor(info_.profile, info_.pixels_per_column % 8 + 1, 32);
+    assembler_.change_sensor(info_);
+    return Sender(info_);
+  }
+  void take() {
+    while (const LidarScan* scan = assembler_.next()) {
       ++taken_;
-      check_scan(*scan, assembler_.format());
+      check_scan(*scan, format());
       require(taken_ == 1 || scan->sequence > sequence_, "scans leave in their order");
       sequence_ = scan->sequence;
     }
   }
   void check_counters() const {
     const auto& counters = assembler_.counters();
-    require(counters.scans == taken_ + counters.untaken_scans, "every scan is taken or counted");
+    require(counters.datagrams() == pushed_, "every datagram is in one counter");
+    require(counters.scans >= taken_ + counters.untaken_scans, "every scan is counted");
     require(counters.incomplete_scans <= counters.scans, "incomplete scans are scans");
   }
 
  private:
-  const glint::ScanAssembler& assembler_;
+  SensorInfo info_;
+  glint::ScanAssembler assembler_;
+  std::uint64_t pushed_ = 0;
   std::uint64_t taken_ = 0;
   std::uint64_t sequence_ = 0;
 };
@@ -157,19 +200,29 @@ class Receiver {
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   ByteFeed feed(glint::fuzz::as_bytes(data, size));
   const SensorInfo info = choose_sensor(feed);
-  glint::ScanAssembler assembler(info, {.reorder_window_packets = feed.byte() % 8});
-  Sender sender(info);
-  Receiver receiver(assembler);
+  Stream stream(info, {.reorder_window_packets = feed.byte() % 8});
+  std::optional<Sender> sender(info);
   std::vector<std::byte> datagram;
-  for (std::size_t i = 0; i < kMaxDatagrams && !feed.empty(); ++i) {
-    next_datagram(feed, sender, assembler.format().packet_bytes, datagram);
-    look_at(assembler.format(), datagram);
-    assembler.push(datagram);
+  for (std::size_t i = 0; i < kMaxSteps && !feed.empty(); ++i) {
+    switch (next_step(feed, *sender, stream.format().packet_bytes, datagram)) {
+      case Step::kDatagram:
+        stream.push(datagram);
+        break;
+      case Step::kFlush:
+        stream.flush();
+        break;
+      case Step::kOtherIdentity:
+        stream.change_identity();
+        break;
+      case Step::kOtherSensor:
+        sender.emplace(stream.change_sensor());
+        break;
+    }
     // A slow taker now and then.
-    if (i % 7 != 0) receiver.take(assembler);
+    if (i % 7 != 0) stream.take();
   }
-  assembler.flush();
-  receiver.take(assembler);
-  receiver.check_counters();
+  stream.flush();
+  stream.take();
+  stream.check_counters();
   return 0;
 }

@@ -51,7 +51,7 @@ void write_packets() {
         for (char index = 0; index < 8; ++index) input += {1, frame, index};
       }
       input += {1, 2, 1, 1, 2, 0, 1, 2, 0, 1, 1, 7};
-      input += {2, 2, 2, 12, 0, 1};
+      input += {2, 2, 2, 12, 0, 1, 3, 7, 11, 1, 2, 3};
       input += {0, 9, 0, 'n', 'o', 'p', 'a', 'c', 'k', 'e', 't', 's'};
       save("packets", fmt::format("{}_{}", glint::to_string(profiles[p]), sensor == '\x47'), input);
     }
