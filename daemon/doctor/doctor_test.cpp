@@ -42,7 +42,8 @@ TEST(ProcText, UdpSocketsHavePortInodeAndDrops) {
   const auto v6 = parse_udp_sockets(fixture("udp6.txt"));
   ASSERT_EQ(v6.size(), 1U);
   EXPECT_EQ(v6[0].local_port, 7503);
-  EXPECT_TRUE(parse_udp_sockets("1: nonsense\n 2: 0:1 2 3 4 5 6 7 8 9").empty());
+  EXPECT_TRUE(
+      parse_udp_sockets("1: nonsense\n 2: 0:1 2 3 4 5 6 7 8\n 3: 0:XY 2 3 4 5 6 7 8 9").empty());
 }
 
 TEST(ProcText, ANumberIsOneAndNothingElse) {
