@@ -158,6 +158,7 @@ def main():
     parser.add_argument("--beams", type=int, default=128)
     parser.add_argument("--profile", default="RNG19_RFL8_SIG16_NIR16")
     parser.add_argument("--ask-sensor", action="store_true")
+    parser.add_argument("--line", choices=["good", "bad", "both"], default="both")
     options = parser.parse_args()
     seconds = options.minutes * 60
     with tempfile.TemporaryDirectory(prefix="glint-soak-") as directory:
@@ -168,14 +169,17 @@ def main():
                        check=True, stdout=subprocess.DEVNULL)
         capture, meta = os.path.join(world, "capture.pcap"), os.path.join(world, "metadata.json")
         packets_per_scan = 64
-        print(f"a good line for {seconds:.0f} s")
-        counters, done, _ = run(options, capture, meta, os.path.join(directory), seconds, [])
-        check_good_line(counters, done)
+        if options.line != "bad":
+            print(f"a good line for {seconds:.0f} s")
+            counters, done, _ = run(options, capture, meta, os.path.join(directory), seconds, [])
+            check_good_line(counters, done)
+        if options.line == "good":
+            return
         print(f"a bad line for {seconds:.0f} s")
         scenario = os.path.join(directory, "scenario.toml")
-        # Within a run shorter than a minute, too.
+        # Within a run shorter than a minute, too; the clock does not jump while the sensor restarts.
         with open(scenario, "w") as file:
-            file.write(SCENARIO.format(jump=seconds / 4, foreign=seconds / 3, restart=min(30.0, seconds / 2)))
+            file.write(SCENARIO.format(jump=seconds / 4 + min(10.0, seconds / 20), foreign=seconds / 3, restart=min(30.0, seconds / 2)))
         line = ["--scenario", scenario, "--loss", "0.05", "--reordering", "0.05", "--duplicates", "0.02"]
         counters, done, states = run(options, capture, meta, directory, seconds, line)
         check_bad_line(counters, done, states, packets_per_scan)
