@@ -32,7 +32,8 @@ constexpr std::array kKeys{
               "Have the sensor keep in its flash what it is told; else it lasts until it loses "
               "power."},
     ConfigKey{"sensor.udp_dest", &at<&Config::sensor, &Config::Sensor::udp_dest>, 0, 0, "", "",
-              "Where the sensor sends its packets: an IP address. auto: this machine. Empty: as "
+              "Where the sensor sends its packets: an IP address. auto: this machine, or "
+              "multicast_group. Empty: as "
               "the sensor has it."},
     ConfigKey{"sensor.lidar_mode", &at<&Config::sensor, &Config::Sensor::lidar_mode>, 0, 0, "", "",
               "Columns a turn and turns a second: 512x10, 1024x10, 2048x10, ... Empty: as the "
@@ -78,6 +79,16 @@ constexpr std::array kKeys{
     ConfigKey{"sensor.rcvbuf_bytes", &at<&Config::sensor, &Config::Sensor::rcvbuf_bytes>, 65536,
               1 << 30, "bytes", "",
               "Receive buffer asked of the kernel; net.core.rmem_max must allow it."},
+    ConfigKey{
+        "sensor.clock", &at<&Config::sensor, &Config::Sensor::clock>, 0, 0, "",
+        "auto|internal|pps|ptp|host",
+        "What the sensor's stamps are set by, told with every pose. auto: timestamp_mode of "
+        "the metadata, internal without one. host: poses carry this machine's time, converted "
+        "from the sensor's."},
+    ConfigKey{"sensor.tai_utc_offset_s", &at<&Config::sensor, &Config::Sensor::tai_utc_offset_s>,
+              -60, 60, "s", "",
+              "Subtracted from every stamp of a sensor whose clock is ptp, and of no other, before "
+              "anything else sees it. PTP delivers TAI: 37 makes it UTC."},
 
     ConfigKey{"mount.T_base_sensor", &at<&Config::mount, &Config::Mount::T_base_sensor>, -1000,
               1000, "m", "",

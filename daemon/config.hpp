@@ -48,6 +48,8 @@ struct Config {
     int lidar_port = 0;
     int imu_port = 0;
     int rcvbuf_bytes = 8 << 20;
+    std::string clock = "auto";
+    int tai_utc_offset_s = 0;
   };
   struct Mount {
     Pose T_base_sensor;

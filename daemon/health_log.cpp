@@ -39,6 +39,10 @@ void HealthLog::look(const RuntimeStatus& status, std::int64_t now_ns,
   look_at_counter("datagrams of another size than the sensor's packets", packets.bad_size, now_ns);
   look_at_counter("datagrams of another type than lidar packets", packets.bad_type, now_ns);
   look_at_counter("packets of another sensor", packets.bad_serial, now_ns);
+  look_at_counter("jumps of the sensor's or this machine's clock", status.snapshot->clock.jumps,
+                  now_ns);
+  look_at_counter("IMU packets that hold no measurement", status.snapshot->imu.bad_packets, now_ns);
+  look_at_mount(status.snapshot->imu);
   look_at_counter("keyframes dropped, the back end was too slow",
                   status.snapshot->dropped_keyframes, now_ns);
   look_at_counter("keyframes missing in the session file (" + status.map->store_error + ")",
@@ -58,6 +62,16 @@ void HealthLog::look_at_counter(const std::string& what, std::uint64_t value, st
   if (value <= logged || !limiter_.allow(what, now_ns)) return;
   spdlog::warn("{} {} ({} in all)", value - logged, what, value);
   logged = value;
+}
+
+void HealthLog::look_at_mount(const ImuStatus& imu) {
+  constexpr double kWorthTelling_deg = 5.0;
+  if (!imu.up_mps2 || imu.mount_tilt_deg < kWorthTelling_deg || tilt_told_) return;
+  tilt_told_ = true;
+  spdlog::warn(
+      "the sensor's accelerometer says that it is tilted by {:.1f} degrees against "
+      "mount.T_base_sensor; correct the mounting, or the map will not be upright",
+      imu.mount_tilt_deg);
 }
 
 }  // namespace glint::daemon

@@ -24,9 +24,12 @@ class HealthLog {
   void look_at_refusals(const RuntimeStatus& status, std::uint64_t refused, std::int64_t now_ns);
   void look_at_counter(const std::string& what, std::uint64_t value, std::int64_t now_ns);
 
+  void look_at_mount(const ImuStatus& imu);
+
   LogLimiter limiter_;
   std::map<std::string, std::uint64_t> logged_;
   std::uint64_t refused_ = 0;
+  bool tilt_told_ = false;
   SourceState source_ = SourceState::kWaiting;
   slam::TrackingState tracking_ = slam::TrackingState::kInit;
 };

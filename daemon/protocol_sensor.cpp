@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright 2026 The Glint Authors
 //
-// What get_status says of the session with the sensor.
+// What get_status says of the sensor: by its packets, and by the session with it.
 #include <algorithm>
 #include <cmath>
 
@@ -71,6 +71,16 @@ Json health_json(const SensorHealth& health) {
 }
 
 }  // namespace
+
+Json packet_health_json(const PacketHealth& health) {
+  constexpr std::uint8_t kAnyAlert = 0x80;
+  return Json{{"alert", (health.alert_flags & kAnyAlert) != 0},
+              {"alert_flags", health.alert_flags},
+              {"thermal_state", health.thermal_state},
+              {"thermal_countdown_s", health.thermal_countdown_s},
+              {"shot_limiting_state", health.shot_limiting_state},
+              {"shot_limiting_countdown_s", health.shot_limiting_countdown_s}};
+}
 
 Json session_json(const SessionStatus& session, std::int64_t now_ns) {
   const auto seconds = [](std::int64_t ns) { return static_cast<double>(ns) * kSecondsPerNs; };

@@ -31,11 +31,12 @@ Json counters_json(const RuntimeStatus& runtime) {
   const AssemblerCounters& c = snapshot.packets;
   return Json{{"received_packets", runtime.packets_received},
               {"kernel_drops", runtime.kernel_drops},
-              {"foreign_packets", runtime.foreign},
+              {"foreign_packets", runtime.foreign + c.bad_serial},
               {"queue_drops", runtime.packets.dropped},
               {"early_packets", snapshot.early_packets},
               {"lidar_packets", c.packets},
-              {"imu_packets", snapshot.imu_packets},
+              {"imu_packets", snapshot.imu.packets},
+              {"bad_imu_packets", snapshot.imu.bad_packets},
               {"bad_size", c.bad_size},
               {"bad_type", c.bad_type},
               {"bad_serial", c.bad_serial},
@@ -100,6 +101,24 @@ std::string_view sensor_state(const RuntimeStatus& runtime, const ServiceStatus&
                                             : to_string(service.session->state);
 }
 
+Json clock_json(const Snapshot& snapshot) {
+  Json out{{"source", to_string(snapshot.clock_source)}};
+  if (!snapshot.clock.known) return out;
+  out["offset_ns"] = snapshot.clock.offset_ns;
+  out["skew_ppm"] = snapshot.clock.skew_ppm;
+  out["sigma_ns"] = snapshot.clock.sigma_ns;
+  out["jumps"] = snapshot.clock.jumps;
+  return out;
+}
+
+Json imu_json(const ImuStatus& imu) {
+  Json out{{"rate_hz", imu.rate_hz}};
+  if (!imu.up_mps2) return out;
+  out["gravity_mps2"] = Json{imu.up_mps2->x(), imu.up_mps2->y(), imu.up_mps2->z()};
+  out["mount_tilt_deg"] = imu.mount_tilt_deg;
+  return out;
+}
+
 }  // namespace
 
 std::string refusal_sentence(const RuntimeStatus& runtime) {
@@ -152,12 +171,15 @@ Json status_json(const RuntimeStatus& runtime, const ServiceStatus& service, std
   if (const std::string error = sensor_error(runtime, service); !error.empty()) {
     out["sensor_error"] = error;
   }
+  if (snapshot.packet_health) out["packet_health"] = packet_health_json(*snapshot.packet_health);
   if (service.session != nullptr) out["sensor_session"] = session_json(*service.session, now_ns);
   if (snapshot.estimate) {
     put_time(out, snapshot.estimate->stamp);
     out["age_ms"] = static_cast<double>(now_ns - snapshot.arrival_ns) * kMsPerNs;
     out["odometry"] = odometry_json(*snapshot.estimate);
   }
+  out["clock"] = clock_json(snapshot);
+  if (snapshot.imu.packets > 0) out["imu"] = imu_json(snapshot.imu);
   out["map_epoch"] = snapshot.correction.epoch;
   const slam::MapSnapshot& map = *runtime.map->map;
   out["map"] = Json{{"revision", map.revision},

@@ -31,6 +31,9 @@ std::string_view to_string(SourceState state);
 /// are, or none came.
 std::string refusal_sentence(const RuntimeStatus& runtime);
 
+/// State and alerts of the sensor as its packets have them.
+Json packet_health_json(const PacketHealth& health);
+
 /// The session's own part of get_status.
 Json session_json(const SessionStatus& session, std::int64_t now_ns);
 

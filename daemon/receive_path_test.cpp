@@ -33,6 +33,7 @@ constexpr std::size_t kCapacity = 1280;
 /// A socket, the receive thread and the queue, as in glintd.
 class ReceivePath : public testing::Test {
  protected:
+  ReceivePath() { crossings_.expected.silence_ns = kNsPerSecond; }
   ~ReceivePath() override {
     source_.stop();
     thread_.join();
@@ -46,7 +47,7 @@ class ReceivePath : public testing::Test {
   UdpSource source_{test::any_port()};
   Crossings crossings_{kCapacity};
   Heartbeat heartbeat_;
-  ReceiveThread receive_{source_, {false, kNsPerSecond}, crossings_, heartbeat_};
+  ReceiveThread receive_{source_, false, crossings_, heartbeat_};
   ReceivedPacket popped_;
   std::thread thread_{[this] { receive_.run(); }};
 };

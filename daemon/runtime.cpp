@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "daemon/clock_settings.hpp"
+
 namespace glint::daemon {
 namespace {
 
@@ -48,8 +50,9 @@ Runtime::~Runtime() { stop(); }
 void Runtime::start(ScanListener on_scan) {
   receive_ =
       std::make_unique<ReceiveThread>(*source_, options_.lossless, crossings_, receive_heartbeat_);
-  odometry_ = std::make_unique<OdometryThread>(config_, options_.lossless, crossings_,
-                                               odometry_heartbeat_, std::move(on_scan));
+  odometry_ =
+      std::make_unique<OdometryThread>(config_, options_.lossless, crossings_, odometry_heartbeat_,
+                                       *options_.events, std::move(on_scan));
   spawn("odometry", [this] { odometry_->run(); });
   spawn("backend", [this] { backend_.run(); });
   spawn("worker", [this] { work(); });
@@ -94,7 +97,7 @@ void Runtime::work() {
 }
 
 void Runtime::use_sensor(const SensorInfo& info, bool this_start) {
-  const auto shared = std::make_shared<const SensorInfo>(info);
+  const auto shared = std::make_shared<const SensorInfo>(with_clock_settings(info, config_.sensor));
   crossings_.expected.lidar_bytes = PacketFormat(info).packet_bytes;
   crossings_.expected.silence_ns =
       std::max(3 * info.scan_period_ns(), ExpectedPackets::kLeastSilenceNs);

@@ -167,6 +167,7 @@ TEST(SensorLinkTest, AlertsAndTelemetryAreInTheStatus) {
   EXPECT_EQ(health["alerts"][0]["id"], "0x0100000e");
   EXPECT_EQ(health["telemetry"]["temperature_degc"], 45.0);
   EXPECT_EQ(health["ptp"]["locked"], false);
+  EXPECT_EQ(daemon.status()["packet_health"]["shot_limiting_state"], 0);
 }
 
 }  // namespace

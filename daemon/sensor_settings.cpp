@@ -31,16 +31,20 @@ WantedConfig user_settings(const Config::Sensor& sensor) {
   return wanted;
 }
 
+/// Only what is sent to the address that is listened on arrives.
+std::string listening_address(const Config::Sensor& sensor) {
+  // The interface after an IPv6 group is this machine's own affair.
+  const std::string& group = sensor.multicast_group;
+  if (!group.empty()) return group.substr(0, group.find('%'));
+  return sensor.bind_address.empty() ? "@auto" : sensor.bind_address;
+}
+
 WantedConfig all_settings(const Config::Sensor& sensor, UdpPorts ports) {
   WantedConfig wanted = user_settings(sensor);
   wanted.udp_port_lidar = ports.lidar;
   wanted.udp_port_imu = ports.imu;
-  if (sensor.udp_dest == kAuto) {
-    // Only what is sent to the address that is listened on arrives.
-    wanted.udp_dest = unless_empty(sensor.bind_address).value_or("@auto");
-  } else {
-    wanted.udp_dest = unless_empty(sensor.udp_dest);
-  }
+  wanted.udp_dest =
+      unless_empty(sensor.udp_dest == kAuto ? listening_address(sensor) : sensor.udp_dest);
   return wanted;
 }
 

@@ -45,6 +45,8 @@ TEST(SensorSettings, PacketsGoToTheAddressThatIsListenedOn) {
   Config::Sensor sensor = with_host();
   sensor.bind_address = "192.0.2.7";
   EXPECT_EQ(wanted(sensor)["udp_dest"], "192.0.2.7");
+  sensor.multicast_group = "ff02::1234%eth0";
+  EXPECT_EQ(wanted(sensor)["udp_dest"], "ff02::1234");
   sensor.udp_dest = "239.201.201.1";
   EXPECT_EQ(wanted(sensor)["udp_dest"], "239.201.201.1");
   sensor.udp_dest = "";

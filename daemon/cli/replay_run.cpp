@@ -19,7 +19,7 @@ class Replay {
       : options_(options),
         clock_(daemon::stage_clock()),
         assembler_(info),
-        frontend_(info, options.slam, clock_),
+        frontend_(info, options.slam, clock_, options.R_base_sensor),
         backend_(options.slam, options.session_file, clock_) {
     backend_.use_sensor(info);
   }

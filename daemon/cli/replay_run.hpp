@@ -37,6 +37,7 @@ struct ReplayResult {
 
 struct ReplayOptions {
   slam::SlamConfig slam;
+  Eigen::Quaterniond R_base_sensor = Eigen::Quaterniond::Identity();  ///< As Frontend has it.
   std::filesystem::path session_file;
   std::uint64_t max_scans = 0;  ///< 0: all.
   /// Called after each scan with the number of scans so far; false ends the replay.

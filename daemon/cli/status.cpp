@@ -19,8 +19,8 @@ using daemon::Json;
 void print_losses(const Json& counters) {
   std::string text;
   for (const char* name :
-       {"kernel_drops", "foreign_packets", "queue_drops", "missing_packets", "late_packets",
-        "duplicate_packets", "bad_size", "bad_type", "bad_serial", "bad_columns",
+       {"kernel_drops", "foreign_packets", "early_packets", "queue_drops", "missing_packets",
+        "late_packets", "duplicate_packets", "bad_size", "bad_type", "bad_serial", "bad_columns",
         "incomplete_scans", "paused_scans", "dropped_keyframes", "store_failures"}) {
     const auto value = counters.value(name, std::uint64_t{0});
     if (value > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, value);

@@ -65,7 +65,8 @@ struct PacketFacts {
   std::uint64_t other = 0;
   std::size_t other_bytes = 0;           ///< Size of one of the others.
   std::optional<std::uint64_t> on_wire;  ///< Seen before any firewall; null without the right to.
-  std::vector<Eigen::Vector3d> accelerations_mps2;
+  /// What the accelerometer measured at rest; null when it moved, or too little came.
+  std::optional<Eigen::Vector3d> up_mps2;
 };
 
 /// What findings depend on besides. Value type.

@@ -6,17 +6,16 @@
 #include <cmath>
 
 #include "daemon/doctor/judgement.hpp"
+#include "driver/core/gravity.hpp"
+#include "driver/core/imu_packet_layout.hpp"
 #include "driver/core/packet_format.hpp"
 
 namespace glint::daemon {
 namespace {
 
-constexpr double kStandardGravity_mps2 = 9.80665;
-// An IMU of this kind is off by some 0.05; more is no rest, or a broken unit.
+// An IMU of this kind is off by some 0.05 m/s^2; more is a broken unit, or other units.
 constexpr double kGravityTolerance_mps2 = 0.5;
-constexpr double kRestDeviation_mps2 = 0.3;
 constexpr double kMountTolerance_deg = 10.0;
-constexpr std::size_t kFewestAccelerations = 20;
 
 Finding ok(std::string step, std::string what) {
   return {FindingLevel::kOk, std::move(step), std::move(what), {}};
@@ -187,25 +186,17 @@ Findings judge_fragments(const RouteLookup& route, const SensorFacts& sensor) {
 
 Findings judge_gravity(const PacketFacts& packets, const DoctorWishes& wishes) {
   const std::string step = "gravity";
-  const auto& all = packets.accelerations_mps2;
-  if (all.size() < kFewestAccelerations) return {};
-  const auto count = static_cast<double>(all.size());
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& one : all) mean += one / count;
-  double variance = 0.0;
-  for (const Eigen::Vector3d& one : all) variance += (one - mean).squaredNorm() / count;
-  if (std::sqrt(variance) > kRestDeviation_mps2) {
-    return {ok(step, "the sensor moves, so gravity was not compared with its mounting")};
+  if (packets.imu == 0) return {};
+  if (!packets.up_mps2) {
+    return {ok(step, "the sensor did not rest, so gravity was not compared with its mounting")};
   }
-  const double size = mean.norm();
+  const double size = packets.up_mps2->norm();
   if (std::abs(size - kStandardGravity_mps2) > kGravityTolerance_mps2) {
     return {{FindingLevel::kWarn, step,
              fmt::format("at rest the IMU measures {:.2f} m/s^2 in place of 9.81", size),
              "take metadata of this sensor and firmware; if they are, the IMU is broken"}};
   }
-  // At rest an accelerometer measures what holds it up.
-  const Eigen::Vector3d up = wishes.T_base_sensor.rotation * (mean / size);
-  const double tilt_deg = std::acos(std::clamp(up.z(), -1.0, 1.0)) * 180.0 / M_PI;
+  const double tilt_deg = mount_tilt_deg(*packets.up_mps2, wishes.T_base_sensor.rotation);
   if (tilt_deg <= kMountTolerance_deg) {
     return {ok(step, fmt::format("{:.2f} m/s^2, {:.1f} degrees off base's z axis by "
                                  "mount.T_base_sensor",

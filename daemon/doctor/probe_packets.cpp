@@ -15,6 +15,7 @@
 #include "daemon/doctor/probes.hpp"
 #include "daemon/steady_clock.hpp"
 #include "driver/core/error.hpp"
+#include "driver/core/gravity.hpp"
 #include "driver/core/imu_packet.hpp"
 #include "driver/core/packet_format.hpp"
 #include "driver/udp_source.hpp"
@@ -69,7 +70,8 @@ std::optional<std::uint64_t> count_on_wire(const PacketLook& look, std::int64_t 
   return count;
 }
 
-void take(const RawPacket& packet, const PacketLook& look, PacketFacts& facts) {
+void take(const RawPacket& packet, const PacketLook& look, PacketFacts& facts,
+          GravityEstimate& gravity) {
   const std::size_t size = packet.bytes.size();
   if (look.info && size == PacketFormat(*look.info).packet_bytes) {
     ++facts.lidar;
@@ -80,9 +82,7 @@ void take(const RawPacket& packet, const PacketLook& look, PacketFacts& facts) {
       look.info ? parse_imu_packet(ImuPacketFormat(*look.info), packet.bytes, samples) : false;
   if (is_imu) {
     ++facts.imu;
-    for (const ImuSample& sample : samples) {
-      facts.accelerations_mps2.push_back(sample.acceleration_mps2);
-    }
+    for (const ImuSample& sample : samples) gravity.add(sample);
     return;
   }
   ++facts.other;
@@ -98,11 +98,13 @@ void listen(const PacketLook& look, std::int64_t end_ns, PacketFacts& facts) {
     UdpSource source(options);
     facts.listened = true;
     RawPacket packet;
+    GravityEstimate gravity;
     while (steady_now_ns() < end_ns) {
       const SourceStatus status = source.read(packet);
-      if (status == SourceStatus::kPacket) take(packet, look, facts);
+      if (status == SourceStatus::kPacket) take(packet, look, facts, gravity);
       if (status == SourceStatus::kEnd || status == SourceStatus::kError) break;
     }
+    facts.up_mps2 = gravity.up_mps2();
   } catch (const InputError&) {
     facts.listened = false;  // Held; the ports' findings tell by whom.
   }

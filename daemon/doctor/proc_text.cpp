@@ -65,16 +65,14 @@ std::vector<UdpSocketEntry> parse_udp_sockets(std::string_view text) {
   std::vector<UdpSocketEntry> entries;
   while (!text.empty()) {
     const std::vector<std::string_view> row = words(take_line(text));
-    if (row.size() <= kInode) continue;
+    if (row.size() <= kDrops) continue;
     const std::string_view local = row[kLocalAddress];
     const std::size_t colon = local.rfind(':');
     if (colon == std::string_view::npos) continue;
     const auto port = number<std::uint16_t>(local.substr(colon + 1), 16);
     const auto inode = number<std::uint64_t>(row[kInode]);
-    if (!port || !inode) continue;
-    const auto drops =
-        row.size() > kDrops ? number<std::uint64_t>(row[kDrops]) : std::optional<std::uint64_t>();
-    entries.push_back({*port, *inode, drops.value_or(0)});
+    const auto drops = number<std::uint64_t>(row[kDrops]);
+    if (port && inode && drops) entries.push_back({*port, *inode, *drops});
   }
   return entries;
 }

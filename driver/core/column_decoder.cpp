@@ -53,7 +53,8 @@ void decode_pixel(const ColumnBlock& block, const std::byte* pixel, std::size_t 
   constexpr PixelField kField = kProfileTable[kProfile].field(kChannel);
   if constexpr (kField.present()) {
     constexpr std::uint32_t kMask = (1U << kField.width_bits) - 1U;
-    const auto word = load<std::uint32_t>(pixel + kField.offset_bits / 32 * 4);
+    constexpr int kWordOffset = kField.offset_bits / 32 * 4;
+    const auto word = load<std::uint32_t>(pixel + kWordOffset);
     auto* const out = block.out<kChannel>() + at;
     *out = static_cast<std::remove_pointer_t<decltype(out)>>(
         (word >> kField.offset_bits % 32 & kMask) * std::uint32_t{kField.scale});
@@ -64,7 +65,8 @@ void decode_pixel(const ColumnBlock& block, const std::byte* pixel, std::size_t 
 template <std::size_t kProfile>
 void decode_pixels(const ColumnBlock& block, int columns, int first_row) {
   for (int row = first_row; row < block.rows; ++row) {
-    const std::byte* pixel = block.pixels + row * kProfileTable[kProfile].pixel_bytes;
+    const std::byte* pixel =
+        block.pixels + std::ptrdiff_t{row} * kProfileTable[kProfile].pixel_bytes;
     std::size_t at = static_cast<std::size_t>(row) * block.row_pixels;
     for (int c = 0; c < columns; ++c, ++at, pixel += block.column_bytes) {
       decode_pixel<kProfile, Channel::kRange>(block, pixel, at);

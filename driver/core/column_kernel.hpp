@@ -17,7 +17,7 @@ constexpr int kBlockColumns = 16;
 
 /// Neighbouring columns of a packet, and where in the scan they go. Plain pointers: a file compiled
 /// for newer processors must not instantiate a library's inline functions, for the linker might
-/// give those to everyone.
+/// give those to everyone, nor see types of Eigen, which lie in memory as the compiler's flags say.
 struct ColumnBlock {
   const std::byte* pixels;   ///< First pixel of the first column.
   std::size_t column_bytes;  ///< From a column to the next.
@@ -118,7 +118,8 @@ class BlockDecoder {
   template <int kQuad>
   static void decode_quad(const ColumnBlock& block, const std::byte* tile, std::size_t at) {
     Row word[4];
-    transpose(tile + kQuad * kQuadBytes, block.column_bytes, word);
+    constexpr int kOffset = kQuad * kQuadBytes;
+    transpose(tile + kOffset, block.column_bytes, word);
     decode_word<kQuad * 4>(block, word[0], at);
     decode_word<kQuad * 4 + 1>(block, word[1], at);
     decode_word<kQuad * 4 + 2>(block, word[2], at);

@@ -54,8 +54,8 @@ struct LidarScan {
   /// In the middle of this one, maybe: columns before the jump have their times moved to the clock
   /// after it.
   bool clock_jumped = false;
-  Image<std::uint32_t> range_mm;  ///< 0 = no return.
-  Image<std::uint16_t> signal;    ///< Photons.
+  Image<std::uint32_t> range_mm;      ///< 0 = no return.
+  Image<std::uint16_t> signal;        ///< Photons.
   Image<std::uint16_t> reflectivity;  ///< 16-bit on old legacy firmware, calibrated 0-255 later.
   Image<std::uint16_t> near_ir;       ///< Photons of ambient light.
   Image<std::uint32_t> range2_mm;     ///< Second return, dual profiles only.

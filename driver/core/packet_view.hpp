@@ -27,11 +27,12 @@ class ColumnView {
  public:
   ColumnView(const PacketFormat& format, const std::byte* data) : format_(&format), data_(data) {}
 
-  /// At most 2^62 ns (146 years), so that differences and small steps from it cannot overflow.
+  /// The stamp less the format's excess; on the wire at most 2^62 ns (146 years), so that
+  /// differences and small steps from it cannot overflow.
   [[nodiscard]] SensorTime time() const {
     constexpr std::uint64_t kLatest_ns = 1ULL << 62U;
-    return {static_cast<std::int64_t>(
-        std::min(load<std::uint64_t>(data_ + kColumnTimeOffset), kLatest_ns))};
+    const auto stamp_ns = std::min(load<std::uint64_t>(data_ + kColumnTimeOffset), kLatest_ns);
+    return {static_cast<std::int64_t>(stamp_ns) - format_->stamp_excess_ns};
   }
   [[nodiscard]] std::uint16_t measurement_id() const {
     return load<std::uint16_t>(data_ + kMeasurementIdOffset);

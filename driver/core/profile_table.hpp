@@ -3,8 +3,9 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 
-#include "driver/core/packet_format.hpp"
+#include "driver/core/profile_layout.hpp"
 
 namespace glint {
 

@@ -222,6 +222,19 @@ void read_windows(const Groups& groups, SensorInfo& info) {
                               : azimuth.value_or(AzimuthWindow{}).columns(columns);
 }
 
+void read_clock(const Groups& groups, SensorInfo& info) {
+  const auto mode = groups.config.text("timestamp_mode");
+  if (!mode) return;
+  if (const auto clock = clock_of_timestamp_mode(*mode)) {
+    info.clock = *clock;
+    return;
+  }
+  info.warnings.push_back(fmt::format(
+      "the metadata's timestamp_mode {} is not known, so times are taken to be those of the "
+      "sensor's oscillator; say what they are with sensor.clock",
+      *mode));
+}
+
 void read_data_format(const Groups& groups, SensorInfo& info) {
   const MetadataGroup& format = groups.format;
   read_profile(format, info);
@@ -292,6 +305,7 @@ SensorInfo parse_sensor_info(std::string_view json, std::string_view name) {
   read_data_format(groups, info);
   read_imu_format(groups, info);
   read_transforms(groups, info);
+  read_clock(groups, info);
   return info;
 }
 

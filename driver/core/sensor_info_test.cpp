@@ -139,6 +139,19 @@ TEST(SensorInfo, ColumnWindowFollowsFromTheAzimuthWindowWhereItIsMissing) {
   EXPECT_EQ(parse(metadata).column_window, (std::pair{1, 256}));
 }
 
+TEST(SensorInfo, TheClockIsThatOfTheTimestampModeAndTheOscillatorWithoutOne) {
+  json metadata = flat_metadata();
+  EXPECT_EQ(parse(metadata).clock, ClockSource::kInternal);
+  metadata["timestamp_mode"] = "TIME_FROM_PTP_1588";
+  EXPECT_EQ(parse(metadata).clock, ClockSource::kPtp);
+  metadata["timestamp_mode"] = "TIME_FROM_SYNC_PULSE_IN";
+  EXPECT_EQ(parse(metadata).clock, ClockSource::kPps);
+  EXPECT_EQ(to_string(parse(metadata).clock), "pps");
+  metadata["timestamp_mode"] = "TIME_FROM_THE_STARS";
+  EXPECT_EQ(parse(metadata).clock, ClockSource::kInternal);
+  EXPECT_THAT(parse(metadata).warnings, ElementsAre(HasSubstr("TIME_FROM_THE_STARS")));
+}
+
 TEST(SensorInfo, ImuProfileThatIsNotReadIsWarnedOf) {
   json metadata = flat_metadata();
   metadata["data_format"]["udp_profile_imu"] = "ACCEL99_NEW";

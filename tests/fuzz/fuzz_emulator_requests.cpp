@@ -28,9 +28,11 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
       glint::test::make_sensor(glint::LidarProfile::kRng19Rfl8Sig16Nir16, 8, 512));
   if (size == 0) return 0;
   now_ns = 0;
-  glint::emulator::EmulatedSensor sensor(
-      {.metadata_json = metadata, .firmware = kFirmware[data[0] % kFirmware.size()]},
-      {.monotonic_ns = [] { return now_ns; }}, [](const auto&) {});
+  glint::emulator::EmulatedSensor sensor({.metadata_json = metadata,
+                                          .firmware = kFirmware[data[0] % kFirmware.size()],
+                                          .config_changes = {}},
+                                         {.monotonic_ns = [] { return now_ns; }},
+                                         [](const auto&) {});
   std::string_view text = glint::fuzz::as_text(data + 1, size - 1);
   // Requests of three lines each: method, target, body; a line without method goes to the TCP port.
   for (int i = 0; i < 20 && !text.empty(); ++i) {

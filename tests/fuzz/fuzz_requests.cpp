@@ -24,7 +24,8 @@ const daemon::Snapshot& some_snapshot() {
       estimate.state = glint::slam::TrackingState::kTracking;
       made.history.append({.stamp = estimate.stamp,
                            .T_odom_sensor = estimate.T_odom_sensor,
-                           .state = estimate.state});
+                           .state = estimate.state,
+                           .host_time = {}});
       made.estimate = estimate;
     }
     return made;

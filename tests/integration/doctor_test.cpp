@@ -26,7 +26,7 @@ class DoctorTest : public ::testing::Test {
   std::map<std::string, std::string> examine(const std::string& sensor) {
     // The JSON is on standard output, the sentence of a failure after it.
     const auto result = test::run_glint(
-        {"doctor", "--sensor", sensor, "--config", config_, "--seconds", "0.5", "--json"});
+        {"doctor", "--sensor", sensor, "--config", config_, "--seconds", "1.5", "--json"});
     exit_code_ = result.exit_code;
     const Json json = Json::parse(result.out.substr(0, result.out.rfind('}') + 1));
     std::map<std::string, std::string> levels;

