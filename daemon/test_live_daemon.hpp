@@ -30,6 +30,7 @@
 #include "daemon/test_room.hpp"
 #include "driver/emulator/sensor_emulator.hpp"
 #include "driver/udp_source.hpp"
+#include "tests/support/slow_build.hpp"
 
 namespace glint::test {
 
@@ -63,7 +64,7 @@ class RoomStreamer {
 
  private:
   static constexpr int kScans = 6;
-  static constexpr std::chrono::milliseconds kPeriod{30};
+  static constexpr std::chrono::milliseconds kPeriod{30 * kSlowdown};
 
   template <class Change>
   void change(Change apply) {
@@ -223,12 +224,13 @@ class LiveDaemon {
 
   daemon::Json status() { return daemon::Client(address()).call("get_status"); }
   [[nodiscard]] std::string address() const { return "127.0.0.1:" + std::to_string(tcp_port_); }
-  /// Polls get_status until `done(result)`; the last one when it never was, after ten seconds.
+  /// Polls get_status until `done(result)`; the last one when it never was, after ten seconds (more
+  /// in a slow build).
   template <class Done>
   testing::AssertionResult reaches(Done done) {
     daemon::Client client(address());
     daemon::Json last;
-    for (int i = 0; i < 1000; ++i) {
+    for (int i = 0; i < 1000 * kSlowdown; ++i) {
       last = client.call("get_status");
       if (done(last)) return testing::AssertionSuccess();
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
