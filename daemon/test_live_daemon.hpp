@@ -133,6 +133,9 @@ class LiveDaemon {
     source_ = std::make_unique<UdpSource>(udp);
     port_ = source_->lidar_port();
     config_.server.listen = "127.0.0.1:0";
+    // Enough for the room, and quick in a slow build.
+    config_.slam.orb_features = 300;
+    config_.slam.match_max = 60;
     emulator_options_.sensor.reinitialise_ns = 20 * kMs_ns;
     emulator_options_.sensor.boot_ns = 30 * kMs_ns;
     streamer_.set_sensor(room_sensor());

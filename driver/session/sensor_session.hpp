@@ -132,7 +132,6 @@ class SensorSession {
   Task task_ = Task::kIdentify;
   std::int64_t due_ns_ = 0;
   bool asked_ = false;
-  std::uint64_t question_ = 0;
   std::shared_ptr<std::optional<SensorReply>> reply_;  ///< Also held by the handler under way.
 
   FirmwareVersion firmware_;

@@ -7,7 +7,7 @@ namespace glint::test {
 /// How many times slower than a release build the tests must expect this one to be: what feeds live
 /// threads waits that much longer between scans, and gives up that much later.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-inline constexpr int kSlowdown = 10;
+inline constexpr int kSlowdown = 5;
 #else
 inline constexpr int kSlowdown = 1;
 #endif
