@@ -25,7 +25,9 @@ double distance(const GroundPlane& plane, const Eigen::Vector3d& point) {
 }  // namespace
 
 std::optional<GroundPlane> GroundFinder::find(std::span<Eigen::Vector3f> points_m,
-                                              const Eigen::Vector3d& up) {
+                                              const Eigen::Vector3d& up,
+                                              std::size_t* ground_count) {
+  *ground_count = 0;
   if (!height_m_ && options_.sensor_height_m > 0) height_m_ = options_.sensor_height_m;
   collect_candidates(points_m, up);
   std::optional<GroundPlane> plane = sample_planes(up);
@@ -34,9 +36,10 @@ std::optional<GroundPlane> GroundFinder::find(std::span<Eigen::Vector3f> points_
   if (!level) return std::nullopt;
   height_m_ =
       height_m_ ? *height_m_ + kHeightGain * (plane->height_m - *height_m_) : plane->height_m;
-  std::ranges::stable_partition(points_m, [&](const Eigen::Vector3f& p) {
+  const auto others = std::ranges::stable_partition(points_m, [&](const Eigen::Vector3f& p) {
     return std::abs(distance(*plane, p.cast<double>())) < options_.inlier_m;
   });
+  *ground_count = points_m.size() - others.size();
   return plane;
 }
 

@@ -34,8 +34,9 @@ class GroundFinder {
   explicit GroundFinder(GroundOptions options) : options_(options) {}
 
   /// `points_m` and `up` in the scan frame. Parts the points: those on the ground are moved to the
-  /// front of `points_m`. Null when no plane passes; then none is on the ground.
-  std::optional<GroundPlane> find(std::span<Eigen::Vector3f> points_m, const Eigen::Vector3d& up);
+  /// front of `points_m`, so many. Null when no plane passes; then none is on the ground.
+  std::optional<GroundPlane> find(std::span<Eigen::Vector3f> points_m, const Eigen::Vector3d& up,
+                                  std::size_t* ground_count);
   /// Forgets the height that it found by itself.
   void reset() { height_m_.reset(); }
 

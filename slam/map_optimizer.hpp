@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "driver/core/lidar_scan.hpp"
+#include "driver/core/sensor_info.hpp"
+#include "driver/core/xyz_lut.hpp"
+#include "slam/config.hpp"
+#include "slam/deskew.hpp"
+#include "slam/features.hpp"
+#include "slam/ground.hpp"
+#include "slam/joint_optimizer.hpp"
+#include "slam/local_map.hpp"
+#include "slam/matching.hpp"
+#include "slam/plane_features.hpp"
+#include "slam/scan_images.hpp"
+#include "slam/window_ba.hpp"
+
+namespace glint::slam {
+
+/// What map optimisation makes of the odometry's pose. Value type.
+struct MapOptimization {
+  bool ok = false;  ///< False: keep the pose that odometry gave.
+  Pose T_odom_scan;
+  /// Translation then rotation, right perturbation, m^2 and rad^2.
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Identity();
+  int plane_terms = 0;
+  int point_terms = 0;
+  std::optional<GroundPlane> ground;
+};
+
+/// Corrects the odometry's drift: the scan's surfaces against those of the local map, and its
+/// keypoints against the last scans', in one problem [Du & Beltrame 2023, sec. III-B, "Map
+/// Optimization"]. Thread-compatible; owned by the odometry thread.
+class MapOptimizer {
+ public:
+  MapOptimizer(const SensorInfo& info, const SlamConfig& config, std::shared_ptr<const XyzLut> lut);
+
+  /// The pose of a scan that odometry places at `start`. `motion` moves its points to one instant;
+  /// null: it is taken as rigid.
+  MapOptimization optimize(const LidarScan& scan, const ScanImages& images,
+                           const Features& features, const std::vector<Match>& matches,
+                           const Pose& start, const ConstantVelocity* motion);
+  /// Takes the scan that was optimised last into map and window, at its final pose.
+  void remember(const Features& features, const std::vector<Match>& matches,
+                const Pose& T_odom_scan);
+  /// Forgets map and window.
+  void reset();
+
+  [[nodiscard]] LocalMap& map() { return map_; }
+
+ private:
+  void associate(const Features& features, const std::vector<Match>& matches, const Pose& pose);
+  [[nodiscard]] bool settled(const Pose& from, const Pose& to) const;
+
+  const SlamConfig config_;
+  PlaneExtractor extractor_;
+  GroundFinder ground_finder_;
+  LocalMap map_;
+  SlidingWindow window_;
+
+  std::vector<Eigen::Vector3f> points_m_;  ///< Of the scan; those on the ground first.
+  std::size_t ground_count_ = 0;
+  std::vector<PlaneTerm> planes_;
+  std::vector<PointTerm> points_;
+};
+
+}  // namespace glint::slam
