@@ -4,7 +4,7 @@
 #
 # usage: ./test.sh [--all]
 # Installs what the tests need, builds, and runs them. --all adds those that take long: the README's two
-# commands in a fresh Debian root, and longer simulated worlds.
+# commands in a fresh Debian root, longer simulated worlds, and a minute of fuzzing for each parser.
 # Captures are looked for in GLINT_DATA_DIR (default ../shared/data); without them their tests skip,
 # or fail where CI=true.
 set -euo pipefail
@@ -18,9 +18,10 @@ say() {
 }
 
 labels=(-LE long)
+all=false
 case "${1:-}" in
   "") ;;
-  --all) labels=() ;;
+  --all) labels=(); all=true ;;
   *) echo "usage: ./test.sh [--all]" >&2; exit 2 ;;
 esac
 
@@ -35,3 +36,8 @@ cmake --build build -- --quiet
 
 say "running the tests"
 ctest --test-dir build --output-on-failure --parallel 2 "${labels[@]}"
+
+if $all; then
+  say "fuzzing"
+  tests/fuzz/run.sh 60
+fi

@@ -10,16 +10,18 @@
 #include <random>
 
 #include "daemon/protocol_map.hpp"
+#include "daemon/sensor_link.hpp"
 #include "daemon/version.hpp"
 
 namespace glint::daemon {
 namespace {
 
 /// What hello announces: only what works.
-constexpr std::array kFeatures = {
-    "get_pose",       "get_pose.at_ns", "get_pose.predict_ms", "get_status",       "get_map",
-    "get_trajectory", "get_config",     "subscribe.pose",      "subscribe.status", "unsubscribe",
-    "pause",          "resume",         "reset_odometry"};
+constexpr std::array kFeatures = {"get_pose",         "get_pose.at_ns", "get_pose.predict_ms",
+                                  "get_status",       "get_map",        "get_trajectory",
+                                  "get_config",       "subscribe.pose", "subscribe.status",
+                                  "subscribe.events", "unsubscribe",    "pause",
+                                  "resume",           "reset_odometry"};
 
 /// Tells one run of the daemon from the next.
 std::string random_instance() {
@@ -33,7 +35,6 @@ Api::Api(boost::asio::io_context& io, Runtime& runtime, const Config& config)
     : io_(io),
       runtime_(runtime),
       config_(config),
-      context_{config.mount.T_base_sensor, runtime.info().scan_period_ns()},
       instance_(random_instance()),
       start_ns_(steady_now_ns()) {}
 
@@ -79,24 +80,32 @@ std::string Api::hello_line() const {
                                          {"features", kFeatures}});
 }
 
+PoseContext Api::context() const {
+  return {config_.mount.T_base_sensor, runtime_.scan_period_ns()};
+}
+
 Json Api::status() const {
   ServiceStatus service;
   service.instance = instance_;
   service.source_name = runtime_.options().source_name;
   service.session_file = runtime_.options().session_file.string();
   service.uptime_ns = steady_now_ns() - start_ns_;
-  service.scan_period_ns = context_.scan_period_ns;
+  service.scan_period_ns = runtime_.scan_period_ns();
+  if (sensor_ != nullptr) {
+    service.session = &sensor_->status();
+    service.sensor_problem = sensor_->problem();
+  }
   service.clients = client_count_;
   return status_json(runtime_.status(), service, steady_now_ns());
 }
 
 Json Api::pose(const Snapshot& snapshot, PoseFrames frames) const {
-  return newest_pose_json(snapshot, frames, context_, steady_now_ns());
+  return newest_pose_json(snapshot, frames, context(), steady_now_ns());
 }
 
 Json Api::head() const {
   const auto snapshot = runtime_.snapshot();
-  const auto state = client_state(*snapshot, steady_now_ns(), context_.scan_period_ns);
+  const auto state = client_state(*snapshot, steady_now_ns(), runtime_.scan_period_ns());
   Json out{{"sensor", 0}, {"state", slam::to_string(state)}};
   if (snapshot->estimate) put_time(out, snapshot->estimate->stamp);
   out["map_epoch"] = snapshot->correction.epoch;
@@ -104,13 +113,13 @@ Json Api::head() const {
 }
 
 Json Api::call_get_pose(const Json& params) {
-  return get_pose(params, *runtime_.snapshot(), context_, steady_now_ns());
+  return get_pose(params, *runtime_.snapshot(), context(), steady_now_ns());
 }
 
 Json Api::call_get_status(const Json&) { return status(); }
 
 Json Api::call_get_trajectory(const Json& params) {
-  return get_trajectory(params, *runtime_.snapshot(), context_, steady_now_ns());
+  return get_trajectory(params, *runtime_.snapshot(), context(), steady_now_ns());
 }
 
 Json Api::call_get_config(const Json&) {

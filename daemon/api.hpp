@@ -14,6 +14,8 @@
 
 namespace glint::daemon {
 
+class SensorLink;
+
 /// The methods that any client may call and that concern no one else: requests in, lines out.
 /// Lives on the main thread; map queries run on the worker and come back by the io_context.
 class Api {
@@ -32,7 +34,10 @@ class Api {
   [[nodiscard]] Json pose(const Snapshot& snapshot, PoseFrames frames) const;
   /// sensor, state and time: what every answer has.
   [[nodiscard]] Json head() const;
-  [[nodiscard]] double scan_rate_hz() const { return runtime_.info().scan_rate_hz; }
+  [[nodiscard]] const EventLog& events() const { return runtime_.events(); }
+  [[nodiscard]] double scan_rate_hz() const { return runtime_.scan_rate_hz(); }
+  /// The session with the sensor, for status; must outlive the calls.
+  void set_sensor(const SensorLink& sensor) { sensor_ = &sensor; }
   /// Clients connected now, for status.
   void set_client_count(std::size_t count) { client_count_ = count; }
 
@@ -49,11 +54,12 @@ class Api {
   Json call_reset_odometry(const Json& params);
   void call_get_map(const Request& request, Reply reply);
   Json post_command(Command command);
+  [[nodiscard]] PoseContext context() const;
 
   boost::asio::io_context& io_;
   Runtime& runtime_;
   const Config config_;
-  const PoseContext context_;
+  const SensorLink* sensor_ = nullptr;  ///< Null: there is no session with the sensor.
   const std::string instance_;
   const std::int64_t start_ns_;
   std::size_t client_count_ = 0;

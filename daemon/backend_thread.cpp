@@ -9,12 +9,11 @@ constexpr std::chrono::milliseconds kWait{100};
 
 }  // namespace
 
-BackendThread::BackendThread(const SensorInfo& info, const Config& config,
-                             const std::filesystem::path& session_file, Crossings& crossings,
-                             Heartbeat& heartbeat)
+BackendThread::BackendThread(const Config& config, const std::filesystem::path& session_file,
+                             Crossings& crossings, Heartbeat& heartbeat)
     : crossings_(crossings),
       heartbeat_(heartbeat),
-      backend_(info, config.slam, session_file, stage_clock()) {
+      backend_(config.slam, session_file, stage_clock()) {
   publish();
 }
 
@@ -25,9 +24,17 @@ void BackendThread::run() {
   while (result != PopResult::kClosed) {
     heartbeat_.beat();
     result = crossings_.keyframes.pop(keyframe, kWait);
+    look_at_sensor();
     if (result == PopResult::kItem) process(keyframe);
   }
   heartbeat_.finish();
+}
+
+void BackendThread::look_at_sensor() {
+  std::shared_ptr<const SensorInfo> sensor = crossings_.sensor.load();
+  if (sensor == sensor_) return;
+  sensor_ = std::move(sensor);
+  backend_.use_sensor(*sensor_);
 }
 
 void BackendThread::process(const slam::Keyframe& keyframe) {

@@ -15,20 +15,21 @@ namespace glint::daemon {
 class BackendThread {
  public:
   /// `session_file`: empty for none. @throws InputError when it cannot be created.
-  BackendThread(const SensorInfo& info, const Config& config,
-                const std::filesystem::path& session_file, Crossings& crossings,
-                Heartbeat& heartbeat);
+  BackendThread(const Config& config, const std::filesystem::path& session_file,
+                Crossings& crossings, Heartbeat& heartbeat);
 
   /// Until the keyframe queue is closed and empty.
   void run();
 
  private:
+  void look_at_sensor();
   void process(const slam::Keyframe& keyframe);
   void publish();
 
   Crossings& crossings_;
   Heartbeat& heartbeat_;
   slam::Backend backend_;
+  std::shared_ptr<const SensorInfo> sensor_;  ///< The one that the session file names.
   DurationStats duration_;
 };
 

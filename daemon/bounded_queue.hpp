@@ -7,18 +7,23 @@
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
+#include <numeric>
 #include <utility>
 #include <vector>
 
 namespace glint::daemon {
 
 /// A queue of fixed capacity between one producer and one consumer thread. Elements are swapped in
-/// and out of preallocated slots, so buffers inside them go round and nothing is allocated.
-/// close() wakes both sides. Thread-safe.
+/// and out of preallocated slots, so buffers inside them go round and nothing is allocated. The
+/// slot freed last is filled first: buffers are made for the depth that the queue reaches, not for
+/// its capacity, and are still in the processor's cache. close() wakes both sides. Thread-safe.
 template <class T>
 class BoundedQueue {
  public:
-  explicit BoundedQueue(std::size_t capacity) : slots_(capacity) {}
+  explicit BoundedQueue(std::size_t capacity)
+      : slots_(capacity), queued_(capacity), free_(capacity) {
+    std::iota(free_.begin(), free_.end(), std::size_t{0});
+  }
 
   /// Swaps `item` in, waiting for room. False when the queue is closed.
   bool push_wait(T& item) {
@@ -31,8 +36,7 @@ class BoundedQueue {
   bool push_drop_oldest(T& item) {
     std::unique_lock lock(mutex_);
     if (!closed_ && size_ == slots_.size()) {
-      head_ = (head_ + 1) % slots_.size();
-      --size_;
+      free_oldest();
       ++dropped_;
     }
     return put(item, lock);
@@ -52,9 +56,8 @@ class BoundedQueue {
     std::unique_lock lock(mutex_);
     items_.wait_for(lock, timeout, [&] { return closed_ || size_ > 0; });
     if (size_ == 0) return closed_ ? PopResult::kClosed : PopResult::kTimeout;
-    std::swap(item, slots_[head_]);
-    head_ = (head_ + 1) % slots_.size();
-    --size_;
+    std::swap(item, slots_[queued_[head_]]);
+    free_oldest();
     lock.unlock();
     room_.notify_one();
     return PopResult::kItem;
@@ -83,17 +86,28 @@ class BoundedQueue {
  private:
   bool put(T& item, std::unique_lock<std::mutex>& lock) {
     if (closed_) return false;
-    std::swap(item, slots_[(head_ + size_) % slots_.size()]);
+    const std::size_t slot = free_.back();
+    free_.pop_back();
+    std::swap(item, slots_[slot]);
+    queued_[(head_ + size_) % queued_.size()] = slot;
     ++size_;
     lock.unlock();
     items_.notify_one();
     return true;
   }
 
+  void free_oldest() {
+    free_.push_back(queued_[head_]);
+    head_ = (head_ + 1) % queued_.size();
+    --size_;
+  }
+
   mutable std::mutex mutex_;
   std::condition_variable room_;
   std::condition_variable items_;
   std::vector<T> slots_;
+  std::vector<std::size_t> queued_;  ///< Ring of slots, `size_` of them from `head_`.
+  std::vector<std::size_t> free_;    ///< The other slots; the one freed last is the last.
   std::size_t head_ = 0;
   std::size_t size_ = 0;
   std::uint64_t dropped_ = 0;

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
 #include <thread>
+#include <vector>
 
 namespace glint::daemon {
 namespace {
@@ -47,6 +49,39 @@ TEST(BoundedQueueTest, WhatIsLeftAfterCloseIsStillHandedOut) {
   ASSERT_EQ(queue.pop(item, 0ms), Pop::kItem);
   EXPECT_EQ(item, 7);
   EXPECT_EQ(queue.pop(item, 0ms), Pop::kClosed);
+}
+
+TEST(BoundedQueueTest, BuffersAreMadeForTheDepthReachedNotForTheCapacity) {
+  BoundedQueue<std::vector<int>> queue(100);
+  std::set<const int*> buffers;
+  std::vector<int> out;
+  std::vector<int> in;
+  for (int round = 0; round < 50; ++round) {
+    for (int depth = 0; depth < 5; ++depth) {
+      in.resize(1000, round);
+      buffers.insert(in.data());
+      ASSERT_TRUE(queue.push_wait(in));
+    }
+    for (int depth = 0; depth < 5; ++depth) {
+      ASSERT_EQ(queue.pop(out, 0ms), BoundedQueue<std::vector<int>>::PopResult::kItem);
+    }
+  }
+  EXPECT_LE(buffers.size(), 7U) << "five in the queue, one at each side";
+}
+
+TEST(BoundedQueueTest, OrderHoldsAcrossDropsAndPops) {
+  Queue queue(2);
+  for (int i = 0; i < 7; ++i) {
+    int item = i;
+    queue.push_drop_oldest(item);
+    if (i % 3 == 2) queue.pop(item, 0ms);
+  }
+  int item = -1;
+  ASSERT_EQ(queue.pop(item, 0ms), Pop::kItem);
+  EXPECT_EQ(item, 5);
+  ASSERT_EQ(queue.pop(item, 0ms), Pop::kItem);
+  EXPECT_EQ(item, 6);
+  EXPECT_EQ(queue.pop(item, 0ms), Pop::kTimeout);
 }
 
 TEST(BoundedQueueTest, CloseWakesAWaitingProducerAndAWaitingConsumer) {

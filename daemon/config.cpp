@@ -22,20 +22,73 @@ auto at(Config& config) -> decltype((config.*Group.*Member)) {
 constexpr double kMaxPort = 65535.0;
 
 constexpr std::array kKeys{
+    ConfigKey{"sensor.host", &at<&Config::sensor, &Config::Sensor::host>, 0, 0, "", "",
+              "Name or IP address of the sensor, which may get its power later. Empty: it is not "
+              "talked to, and sensor.metadata_file is needed."},
+    ConfigKey{"sensor.configure", &at<&Config::sensor, &Config::Sensor::configure>, 0, 0, "", "",
+              "Tell the sensor to send here and what the keys below say, where it differs. false: "
+              "it is left as it is."},
+    ConfigKey{"sensor.persist", &at<&Config::sensor, &Config::Sensor::persist>, 0, 0, "", "",
+              "Have the sensor keep in its flash what it is told; else it lasts until it loses "
+              "power."},
+    ConfigKey{"sensor.udp_dest", &at<&Config::sensor, &Config::Sensor::udp_dest>, 0, 0, "", "",
+              "Where the sensor sends its packets: an IP address. auto: this machine, or "
+              "multicast_group. Empty: as "
+              "the sensor has it."},
+    ConfigKey{"sensor.lidar_mode", &at<&Config::sensor, &Config::Sensor::lidar_mode>, 0, 0, "", "",
+              "Columns a turn and turns a second: 512x10, 1024x10, 2048x10, ... Empty: as the "
+              "sensor has it."},
+    ConfigKey{"sensor.timestamp_mode", &at<&Config::sensor, &Config::Sensor::timestamp_mode>, 0, 0,
+              "", "",
+              "Clock of the packets: TIME_FROM_INTERNAL_OSC, TIME_FROM_SYNC_PULSE_IN or "
+              "TIME_FROM_PTP_1588. Empty: as the sensor has it."},
+    ConfigKey{"sensor.operating_mode", &at<&Config::sensor, &Config::Sensor::operating_mode>, 0, 0,
+              "", "", "NORMAL or STANDBY. Empty: as the sensor has it."},
+    ConfigKey{"sensor.udp_profile_lidar", &at<&Config::sensor, &Config::Sensor::udp_profile_lidar>,
+              0, 0, "", "",
+              "What lidar packets hold, e.g. RNG19_RFL8_SIG16_NIR16. Empty: as the sensor has it."},
+    ConfigKey{"sensor.udp_profile_imu", &at<&Config::sensor, &Config::Sensor::udp_profile_imu>, 0,
+              0, "", "", "What IMU packets hold, e.g. LEGACY. Empty: as the sensor has it."},
+    ConfigKey{"sensor.azimuth_window_mdeg",
+              &at<&Config::sensor, &Config::Sensor::azimuth_window_mdeg>, 0, 360000,
+              "thousandths of a degree", "",
+              "Start and end of the part of the turn that is sent: [0, 360000] for all of it. "
+              "Empty: as the sensor has it."},
+    ConfigKey{"sensor.signal_multiplier", &at<&Config::sensor, &Config::Sensor::signal_multiplier>,
+              0, 3, "", "",
+              "Laser power by a narrower window: 0.25, 0.5, 1, 2 or 3. 0: as the sensor has it."},
     ConfigKey{"sensor.metadata_file", &at<&Config::sensor, &Config::Sensor::metadata_file>, 0, 0,
               "", "",
-              "Metadata JSON of the sensor; needed with a live sensor, --meta goes before it."},
+              "Metadata JSON of the sensor, in place of what sensor.host says; --meta goes before "
+              "it."},
     ConfigKey{"sensor.source_address", &at<&Config::sensor, &Config::Sensor::source_address>, 0, 0,
-              "", "", "IP address of the sensor: packets from others are discarded. Empty: any."},
+              "", "",
+              "IP address of the sensor: packets from others are discarded. Empty: that of "
+              "sensor.host once it has answered, else any. any: any."},
     ConfigKey{"sensor.bind_address", &at<&Config::sensor, &Config::Sensor::bind_address>, 0, 0, "",
               "", "Address of the network interface to listen on. Empty: all of them."},
+    ConfigKey{
+        "sensor.multicast_group", &at<&Config::sensor, &Config::Sensor::multicast_group>, 0, 0, "",
+        "",
+        "Multicast group that the sensor sends to, joined on the interface of bind_address or "
+        "after % in an IPv6 group. Empty: none."},
     ConfigKey{"sensor.lidar_port", &at<&Config::sensor, &Config::Sensor::lidar_port>, 0, kMaxPort,
-              "", "", "UDP port of lidar packets. 0: the one of the metadata."},
+              "", "", "UDP port of lidar packets. 0: the one of the metadata, else 7502."},
     ConfigKey{"sensor.imu_port", &at<&Config::sensor, &Config::Sensor::imu_port>, 0, kMaxPort, "",
-              "", "UDP port of IMU packets. 0: the one of the metadata."},
+              "", "UDP port of IMU packets. 0: the one of the metadata, else 7503."},
     ConfigKey{"sensor.rcvbuf_bytes", &at<&Config::sensor, &Config::Sensor::rcvbuf_bytes>, 65536,
               1 << 30, "bytes", "",
               "Receive buffer asked of the kernel; net.core.rmem_max must allow it."},
+    ConfigKey{
+        "sensor.clock", &at<&Config::sensor, &Config::Sensor::clock>, 0, 0, "",
+        "auto|internal|pps|ptp|host",
+        "What the sensor's stamps are set by, told with every pose. auto: timestamp_mode of "
+        "the metadata, internal without one. host: poses carry this machine's time, converted "
+        "from the sensor's."},
+    ConfigKey{"sensor.tai_utc_offset_s", &at<&Config::sensor, &Config::Sensor::tai_utc_offset_s>,
+              -60, 60, "s", "",
+              "Subtracted from every stamp of a sensor whose clock is ptp, and of no other, before "
+              "anything else sees it. PTP delivers TAI: 37 makes it UTC."},
 
     ConfigKey{"mount.T_base_sensor", &at<&Config::mount, &Config::Mount::T_base_sensor>, -1000,
               1000, "m", "",
@@ -140,8 +193,8 @@ Json value_json(const ConfigKey& key, Config& config) {
 std::string toml_value(const Json& value) {
   if (!value.is_array()) return value.dump();
   std::string list;
-  for (const Json& item : value) list += (list.empty() ? "[" : ", ") + item.dump();
-  return list + "]";
+  for (const Json& item : value) list += (list.empty() ? "" : ", ") + item.dump();
+  return fmt::format("[{}]", list);
 }
 
 /// A number as a user would write it: 0.5, 1e+06, 3.

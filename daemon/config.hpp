@@ -30,12 +30,26 @@ class ConfigError : public InputError {
 /// What each key does, its unit and its range stand in the table of config.cpp.
 struct Config {
   struct Sensor {
+    std::string host;
+    bool configure = true;
+    bool persist = false;
+    std::string udp_dest = "auto";
+    std::string lidar_mode;
+    std::string timestamp_mode;
+    std::string operating_mode;
+    std::string udp_profile_lidar;
+    std::string udp_profile_imu;
+    std::vector<int> azimuth_window_mdeg;
+    double signal_multiplier = 0.0;
     std::string metadata_file;
     std::string source_address;
     std::string bind_address;
+    std::string multicast_group;
     int lidar_port = 0;
     int imu_port = 0;
     int rcvbuf_bytes = 8 << 20;
+    std::string clock = "auto";
+    int tai_utc_offset_s = 0;
   };
   struct Mount {
     Pose T_base_sensor;
@@ -66,11 +80,12 @@ struct Config {
 
 /// One row of the table of keys.
 struct ConfigKey {
-  using Accessor = std::variant<bool& (*)(Config&), int& (*)(Config&), double& (*)(Config&),
-                                std::string& (*)(Config&), Pose& (*)(Config&)>;
+  using Accessor =
+      std::variant<bool& (*)(Config&), int& (*)(Config&), double& (*)(Config&),
+                   std::string& (*)(Config&), Pose& (*)(Config&), std::vector<int>& (*)(Config&)>;
   std::string_view name;  ///< Dotted: "slam.orb_features".
   Accessor field;         ///< The member; its type is the key's type.
-  double min = 0.0;       ///< Smallest and largest value of a number.
+  double min = 0.0;       ///< Smallest and largest value of a number, or of each of a list.
   double max = 0.0;
   std::string_view unit;     ///< Empty for none.
   std::string_view choices;  ///< Allowed strings, separated by "|"; empty for any.

@@ -8,30 +8,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
 #include "daemon/config.hpp"
+#include "driver/core/edit_distance.hpp"
 
 namespace glint::daemon {
 namespace {
 
 /// Keys whose function comes with a later version; a mistake in spelling is not what happened.
-constexpr std::array<std::string_view, 4> kLaterKeys = {"sensor.host", "sensor.configure",
-                                                        "slam.sensor_height_m", "map.on_start"};
-
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i + 1);
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t substituted = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({substituted, row[j] + 1, diagonal + 1});
-    }
-  }
-  return row.back();
-}
+constexpr std::array<std::string_view, 2> kLaterKeys = {"slam.sensor_height_m", "map.on_start"};
 
 const ConfigKey& find_key(std::string_view name, const std::string& where) {
   const auto keys = config_keys();
@@ -50,9 +35,12 @@ const ConfigKey& find_key(std::string_view name, const std::string& where) {
 std::string allowed(const ConfigKey& key) {
   if (!key.choices.empty()) return fmt::format("one of {}", key.choices);
   const std::string unit = key.unit.empty() ? "" : fmt::format(" {}", key.unit);
-  constexpr std::array<std::string_view, 5> kTypes = {"true or false", "a whole number", "a number",
+  constexpr std::array<std::string_view, 6> kTypes = {"true or false",
+                                                      "a whole number",
+                                                      "a number",
                                                       "a string in quotes",
-                                                      "seven numbers [x, y, z, qx, qy, qz, qw]"};
+                                                      "seven numbers [x, y, z, qx, qy, qz, qw]",
+                                                      "[] or two whole numbers [start, end]"};
   std::string text(kTypes[key.field.index()]);
   if (key.min < key.max) text += fmt::format(" from {} to {}{}", key.min, key.max, unit);
   return text;
@@ -100,6 +88,17 @@ bool read(const ConfigKey& key, const toml::node& node, std::string& out) {
   const auto value = node.value_exact<std::string>();
   if (!value || !is_choice(key.choices, *value)) return false;
   out = *value;
+  return true;
+}
+
+bool read(const ConfigKey& key, const toml::node& node, std::vector<int>& out) {
+  const toml::array* array = node.as_array();
+  if (array == nullptr || (array->size() != 0 && array->size() != 2)) return false;
+  std::vector<int> values(array->size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!read(key, (*array)[i], values[i])) return false;
+  }
+  out = std::move(values);
   return true;
 }
 

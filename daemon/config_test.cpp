@@ -67,6 +67,17 @@ TEST_F(ConfigTest, ValuesOfEveryTypeAreRead) {
   EXPECT_EQ(config_.mount.T_base_sensor.rotation.z(), 1.0);
 }
 
+TEST_F(ConfigTest, AWindowIsTwoNumbersOrNone) {
+  EXPECT_EQ(load_error("[sensor]\nazimuth_window_mdeg = [300000, 60000]\n"), "");
+  EXPECT_EQ(config_.sensor.azimuth_window_mdeg, (std::vector<int>{300'000, 60'000}));
+  apply_setting(config_, "sensor.azimuth_window_mdeg=[]");
+  EXPECT_TRUE(config_.sensor.azimuth_window_mdeg.empty());
+  for (const char* bad : {"[0]", "[0, 1, 2]", "[0, 360001]", "[0, 0.5]", "360000"}) {
+    EXPECT_THAT(setting_error(std::string("sensor.azimuth_window_mdeg=") + bad),
+                AllOf(HasSubstr("two whole numbers [start, end] from 0 to 360000 thousandths")));
+  }
+}
+
 TEST_F(ConfigTest, AnUnknownKeyIsAnErrorWithLineAndNearestKey) {
   EXPECT_THAT(load_error("[slam]\n# comment\norb_feature = 3\n"),
               AllOf(HasSubstr("config_test.toml:3"), HasSubstr("'slam.orb_feature'"),
@@ -141,6 +152,7 @@ TEST_F(ConfigTest, BadSettingsNameTheSetting) {
 TEST_F(ConfigTest, PrintedAndReadAgainAConfigurationIsTheSame) {
   apply_setting(config_, "mount.T_base_sensor=[0.1, 0.2, 0.3, 0, 0.6, 0, 0.8]");
   apply_setting(config_, "slam.min_range_m=0.123456789012345678");
+  apply_setting(config_, "sensor.azimuth_window_mdeg=[1000, 2000]");
   const Json before = to_json(config_);
   const std::string text = to_toml(config_);
   config_ = {};

@@ -6,12 +6,14 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "daemon/bounded_queue.hpp"
 #include "daemon/command_mailbox.hpp"
 #include "daemon/snapshot.hpp"
 #include "daemon/snapshot_slot.hpp"
 #include "driver/core/packet_source.hpp"
+#include "driver/core/sensor_info.hpp"
 #include "slam/keyframe.hpp"
 
 namespace glint::daemon {
@@ -32,7 +34,23 @@ struct SourceHealth {
   std::atomic<SourceState> state{SourceState::kWaiting};
   std::atomic<std::uint64_t> packets{0};
   std::atomic<std::uint64_t> kernel_drops{0};
-  std::string error;  ///< Written before `state` becomes kFailed, never after.
+  std::atomic<std::uint64_t> foreign{0};
+  /// Steady clock at the last lidar packet; 0: none yet.
+  std::atomic<std::int64_t> last_packet_ns{0};
+  // Written before `state` becomes kEnded or kFailed, never after.
+  std::string error;
+  std::vector<std::string> notices;  ///< Those that came after the source was opened.
+};
+
+/// What the receive thread is told of the sensor. Thread-safe.
+struct ExpectedPackets {
+  /// Size of its lidar packets: others are no sign of life. 0: not known yet.
+  std::atomic<std::size_t> lidar_bytes{0};
+  /// A live stream without lidar packets for so long is silent.
+  std::atomic<std::int64_t> silence_ns{kLeastSilenceNs};
+
+  /// Shorter than that may be a machine's hiccup.
+  static constexpr std::int64_t kLeastSilenceNs = 300'000'000;
 };
 
 using Job = std::function<void()>;
@@ -54,7 +72,11 @@ struct Crossings {
   CommandMailbox commands;                 ///< main, backend -> odometry
   SnapshotSlot<Snapshot> snapshot;         ///< odometry -> main
   SnapshotSlot<MapState> map;              ///< backend -> main, worker
+  SnapshotSlot<SensorInfo> sensor;         ///< main -> backend; null while it is not known
   SourceHealth source;                     ///< receive -> main
+  ExpectedPackets expected;                ///< main -> receive
+  /// Initialization id of the last lidar packet, 0 when it has none: odometry -> main
+  std::atomic<std::uint32_t> packet_init_id{0};
 };
 
 }  // namespace glint::daemon

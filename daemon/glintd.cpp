@@ -5,6 +5,7 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <boost/asio/io_context.hpp>
 #include <filesystem>
 #include <iostream>
 
@@ -47,13 +48,17 @@ int serve(const Options& options) {
     std::cout << to_toml(config);
     return 0;
   }
+  if (!config.sensor.host.empty()) static_cast<void>(sensor_link_options(config.sensor, {}));
   if (options.check_config) {
     std::cout << "glintd: the configuration is good\n";
     return 0;
   }
   set_up_logging(config.log.level);
   spdlog::info("glintd {}", kVersion);
-  Service service(config, open_input(options.input, config),
+  // Its end would wait for a name that is being looked up, which takes the resolver half a minute
+  // when no server answers: it is left to the process's end.
+  static boost::asio::io_context& io = *new boost::asio::io_context(1);
+  Service service(io, config, open_input(options.input, config),
                   [&options] { return read_config(options); });
   return service.run();
 }

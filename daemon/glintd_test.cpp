@@ -4,6 +4,7 @@
 // The process: options, exit codes, sentences, signals, notification. GLINTD names the program.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <sys/wait.h>
@@ -19,6 +20,7 @@
 
 #include "daemon/client.hpp"
 #include "daemon/test_room.hpp"
+#include "driver/test_udp.hpp"
 #include "pcap/capture_writer.hpp"
 
 namespace glint::daemon {
@@ -69,6 +71,30 @@ class Process {
   pid_t pid_ = -1;
 };
 
+/// A UDP port of this machine, held as long as this lives.
+class HeldPort {
+ public:
+  HeldPort() : socket_(::socket(AF_INET6, SOCK_DGRAM, 0)) {
+    sockaddr_in6 address{};
+    address.sin6_family = AF_INET6;
+    socklen_t size = sizeof address;
+    void* generic = &address;
+    if (bind(socket_, static_cast<sockaddr*>(generic), size) == 0) {
+      getsockname(socket_, static_cast<sockaddr*>(generic), &size);
+    }
+    port_ = ntohs(address.sin6_port);
+  }
+  ~HeldPort() { release(); }
+  HeldPort(const HeldPort&) = delete;
+  HeldPort& operator=(const HeldPort&) = delete;
+  void release() { close(std::exchange(socket_, -1)); }
+  [[nodiscard]] std::string text() const { return std::to_string(port_); }
+
+ private:
+  int socket_;
+  int port_ = 0;
+};
+
 class GlintdTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -108,12 +134,27 @@ class GlintdTest : public testing::Test {
             "--set",    "state.directory=" + (directory_ / "state").string()};
   }
 
+  /// Arguments for a daemon that waits for a sensor where there is none.
+  [[nodiscard]] std::vector<std::string> await_sensor(const std::string& port) const {
+    return {"--config", "/dev/null",
+            "--set",    "sensor.host=127.0.0.1:1",
+            "--set",    "sensor.lidar_port=" + port,
+            "--set",    "sensor.imu_port=" + port,
+            "--set",    "server.listen=",
+            "--set",    "server.unix_socket=" + socket(),
+            "--set",    "state.directory=" + (directory_ / "state").string()};
+  }
+
   /// The first answer for which `done` holds; null after ten seconds.
   template <class Done>
   Json poll_status(Done done) {
+    return poll_status(done, socket());
+  }
+  template <class Done>
+  Json poll_status(Done done, const std::string& address) {
     for (int i = 0; i < 500; ++i) {
       try {
-        Client client(socket());
+        Client client(address);
         Json status = client.call("get_status");
         if (done(status)) return status;
       } catch (const ClientError&) {
@@ -150,6 +191,89 @@ TEST_F(GlintdTest, ServesACaptureToItsEndAndStopsCleanly) {
   EXPECT_FALSE(fs::exists(session.string() + "-wal"));
 }
 
+TEST_F(GlintdTest, TwoSensorsOnOnePortReachTheirOwnDaemonsOnly) {
+  const SensorInfo info = test::room_sensor();
+  const fs::path metadata = directory_ / "room.json";
+  std::ofstream(metadata) << to_metadata_json(info);
+  const std::uint16_t port = test::free_port();
+  const auto serve = [&](const std::string& name, const std::string& sensor) {
+    fs::create_directories(directory_ / name);
+    return std::vector<std::string>{"--meta", metadata.string(),  //
+                                    "--set",  "server.listen=",
+                                    "--set",  "server.unix_socket=" + socket() + name,
+                                    "--set",  "state.directory=",
+                                    "--set",  "sensor.lidar_port=" + std::to_string(port),
+                                    "--set",  "sensor.imu_port=" + std::to_string(port),
+                                    "--set",  "sensor.bind_address=" + name,
+                                    "--set",  "sensor.source_address=" + sensor};
+  };
+  Process first(serve("127.0.0.4", "127.0.0.2"), directory_ / "127.0.0.4");
+  Process second(serve("127.0.0.5", "127.0.0.3"), directory_ / "127.0.0.5");
+  const auto any = [](const Json&) { return true; };
+  ASSERT_FALSE(poll_status(any, socket() + "127.0.0.4").is_null()) << first.log();
+  ASSERT_FALSE(poll_status(any, socket() + "127.0.0.5").is_null()) << second.log();
+
+  // Both sensors send to both, the second one scan less.
+  const test::UdpSender two("127.0.0.2");
+  const test::UdpSender three("127.0.0.3");
+  const std::vector<test::Bytes> packets = test::room_packets(info, 4);
+  const std::size_t fewer = packets.size() * 3 / 4;
+  for (std::size_t i = 0; i < packets.size(); ++i) {
+    for (const char* to : {"127.0.0.4", "127.0.0.5"}) {
+      ASSERT_TRUE(two.send(to, port, packets[i]));
+      ASSERT_TRUE(i >= fewer || three.send(to, port, packets[i]));
+    }
+  }
+  const auto counts = [&](std::size_t own, std::size_t foreign) {
+    return [=](const Json& status) {
+      return status["counters"]["lidar_packets"] == own &&
+             status["counters"]["foreign_packets"] == foreign;
+    };
+  };
+  EXPECT_FALSE(poll_status(counts(packets.size(), fewer), socket() + "127.0.0.4").is_null());
+  EXPECT_FALSE(poll_status(counts(fewer, packets.size()), socket() + "127.0.0.5").is_null());
+
+  auto third = serve("127.0.0.4", "127.0.0.2");
+  third[5] += "b";
+  EXPECT_EQ(exit_code(third), 1);
+  EXPECT_THAT(log_, AllOf(HasSubstr("port " + std::to_string(port) + " is held"),
+                          HasSubstr("bind address")));
+  third.insert(third.end(), {"--set", "sensor.multicast_group=192.0.2.1"});
+  EXPECT_EQ(exit_code(third), 1);
+  EXPECT_THAT(log_, HasSubstr("multicast group 192.0.2.1 is none"));
+}
+
+TEST_F(GlintdTest, ServesBeforeItsSensorHasPower) {
+  HeldPort port;
+  const auto arguments = await_sensor(port.text());
+  EXPECT_EQ(exit_code(arguments), 1) << "the port is held";
+  EXPECT_THAT(log_, HasSubstr("port " + port.text() + " is held by another program"));
+  port.release();
+  Process process(arguments, directory_);
+  const Json status =
+      poll_status([](const Json& s) { return s["sensor_session"]["failures"] > 0; });
+  ASSERT_FALSE(status.is_null()) << process.log();
+  EXPECT_EQ(status["state"], "INIT");
+  EXPECT_EQ(status["sensor_state"], "DISCOVERING");
+  EXPECT_THAT(status["sensor_session"]["failure"].get<std::string>(),
+              HasSubstr("127.0.0.1 refuses connections on port 1"));
+  process.signal(SIGTERM);
+  EXPECT_EQ(process.wait(), 0);
+  EXPECT_THAT(process.log(), AllOf(HasSubstr("127.0.0.1 refuses connections on port 1"),
+                                   HasSubstr("stopped after 0 poses")));
+}
+
+TEST_F(GlintdTest, WhatTheCaptureSaysAtItsEndIsLogged) {
+  auto arguments = serve_capture(2);
+  const fs::path capture = directory_ / "room.pcap";
+  fs::resize_file(capture, fs::file_size(capture) - 100);
+  Process process(arguments, directory_);
+  ASSERT_FALSE(poll_status([](const Json& s) { return s["sensor_state"] == "ENDED"; }).is_null());
+  process.signal(SIGTERM);
+  EXPECT_EQ(process.wait(), 0);
+  EXPECT_THAT(process.log(), HasSubstr("breaks off"));
+}
+
 TEST_F(GlintdTest, ReloadTellsWhatItCannotChange) {
   const fs::path config = directory_ / "glint.toml";
   std::ofstream(config) << "[log]\nlevel = \"info\"\n";
@@ -174,7 +298,11 @@ TEST_F(GlintdTest, BadConfigurationsExitWith78AndASentence) {
   EXPECT_EQ(exit_code({"--config", "/nonexistent.toml"}), 78);
   EXPECT_THAT(log_, HasSubstr("/nonexistent.toml"));
   EXPECT_EQ(exit_code({"--config", "/dev/null"}), 78) << "a live source without metadata";
-  EXPECT_THAT(log_, HasSubstr("sensor.metadata_file"));
+  EXPECT_THAT(log_, AllOf(HasSubstr("sensor.host"), HasSubstr("sensor.metadata_file")));
+  EXPECT_EQ(exit_code({"--config", "/dev/null", "--check-config", "--set", "sensor.host=h", "--set",
+                       "sensor.azimuth_window_mdeg=[0, 360]"}),
+            78);
+  EXPECT_THAT(log_, HasSubstr("[0, 360000]"));
   EXPECT_EQ(exit_code({"--source", "pcap:/nonexistent.pcap"}), 78);
   EXPECT_EQ(exit_code({"--source", "tape"}), 78);
   auto arguments = serve_capture(1);

@@ -8,19 +8,27 @@
 
 namespace glint::daemon {
 
+void HealthLog::look_at_source(const RuntimeStatus& status, EventLog& events) {
+  if (status.source == source_) return;
+  source_ = status.source;
+  spdlog::info("sensor: {}{}{}", to_string(source_), status.source_error.empty() ? "" : ": ",
+               status.source_error);
+  for (const std::string& notice : status.source_notices) spdlog::warn("{}", notice);
+  Json fields{{"state", to_string(source_)}};
+  if (!status.source_error.empty()) fields["message"] = status.source_error;
+  events.post({"sensor", 0, std::move(fields)});
+}
+
 void HealthLog::look(const RuntimeStatus& status, std::int64_t now_ns,
                      std::int64_t scan_period_ns) {
-  if (status.source != source_) {
-    source_ = status.source;
-    spdlog::info("sensor: {}{}{}", to_string(source_), status.source_error.empty() ? "" : ": ",
-                 status.source_error);
-  }
   const auto tracking = client_state(*status.snapshot, now_ns, scan_period_ns);
   if (tracking != tracking_ && limiter_.allow("tracking", now_ns)) {
     tracking_ = tracking;
     spdlog::info("tracking: {}", slam::to_string(tracking));
   }
   const AssemblerCounters& packets = status.snapshot->packets;
+  look_at_refusals(status, packets.bad_size + packets.bad_serial + status.snapshot->early_packets,
+                   now_ns);
   look_at_counter(
       "packets dropped by the kernel, its receive buffer was full (raise "
       "net.core.rmem_max)",
@@ -31,10 +39,22 @@ void HealthLog::look(const RuntimeStatus& status, std::int64_t now_ns,
   look_at_counter("datagrams of another size than the sensor's packets", packets.bad_size, now_ns);
   look_at_counter("datagrams of another type than lidar packets", packets.bad_type, now_ns);
   look_at_counter("packets of another sensor", packets.bad_serial, now_ns);
+  look_at_counter("jumps of the sensor's or this machine's clock", status.snapshot->clock.jumps,
+                  now_ns);
+  look_at_counter("IMU packets that hold no measurement", status.snapshot->imu.bad_packets, now_ns);
+  look_at_mount(status.snapshot->imu);
   look_at_counter("keyframes dropped, the back end was too slow",
                   status.snapshot->dropped_keyframes, now_ns);
   look_at_counter("keyframes missing in the session file (" + status.map->store_error + ")",
                   status.map->store_failures, now_ns);
+}
+
+void HealthLog::look_at_refusals(const RuntimeStatus& status, std::uint64_t refused,
+                                 std::int64_t now_ns) {
+  const std::string why = refused > refused_ ? refusal_sentence(status) : "";
+  if (why.empty() || !limiter_.allow("refusal", now_ns)) return;
+  spdlog::warn("{}", why);
+  refused_ = refused;
 }
 
 void HealthLog::look_at_counter(const std::string& what, std::uint64_t value, std::int64_t now_ns) {
@@ -42,6 +62,16 @@ void HealthLog::look_at_counter(const std::string& what, std::uint64_t value, st
   if (value <= logged || !limiter_.allow(what, now_ns)) return;
   spdlog::warn("{} {} ({} in all)", value - logged, what, value);
   logged = value;
+}
+
+void HealthLog::look_at_mount(const ImuStatus& imu) {
+  constexpr double kWorthTelling_deg = 5.0;
+  if (!imu.up_mps2 || imu.mount_tilt_deg < kWorthTelling_deg || tilt_told_) return;
+  tilt_told_ = true;
+  spdlog::warn(
+      "the sensor's accelerometer says that it is tilted by {:.1f} degrees against "
+      "mount.T_base_sensor; correct the mounting, or the map will not be upright",
+      imu.mount_tilt_deg);
 }
 
 }  // namespace glint::daemon

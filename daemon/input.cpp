@@ -37,8 +37,10 @@ fs::path metadata_file(const InputOptions& options, const Config& config, const 
   if (!config.sensor.metadata_file.empty()) return config.sensor.metadata_file;
   if (capture.empty()) {
     throw ConfigError(
-        "a live sensor needs its metadata: save http://SENSOR/api/v1/sensor/metadata to a file and "
-        "name it with sensor.metadata_file or --meta");
+        "a live sensor needs its name or address, sensor.host; or, to leave it alone, its "
+        "metadata: "
+        "save http://SENSOR/api/v1/sensor/metadata to a file and name it with sensor.metadata_file "
+        "or --meta");
   }
   fs::path stem = capture;
   stem.replace_extension(".json");
@@ -50,6 +52,8 @@ fs::path metadata_file(const InputOptions& options, const Config& config, const 
       fmt::format("there is no metadata for {}: neither {} nor {}; name it with --meta",
                   capture.string(), stem.string(), folder.string()));
 }
+
+std::uint16_t to_port(int port) { return static_cast<std::uint16_t>(port); }
 
 void log_sentences(const std::vector<std::string>& sentences) {
   for (const std::string& sentence : sentences) spdlog::warn("{}", sentence);
@@ -67,8 +71,8 @@ std::unique_ptr<PacketSource> open_capture(const fs::path& file, const SensorInf
     return std::make_unique<recording::RecordingSource>(
         file, info, recording::RecordingSourceOptions{"", source_options.pacer});
   }
-  if (!config.sensor.source_address.empty()) {
-    source_options.source_ip = IpAddress::parse(config.sensor.source_address);
+  if (const std::string address = source_filter(config.sensor); !address.empty()) {
+    source_options.source_ip = IpAddress::parse(address);
     if (!source_options.source_ip) {
       throw ConfigError(fmt::format("sensor.source_address = \"{}\" is no IP address",
                                     config.sensor.source_address));
@@ -77,14 +81,22 @@ std::unique_ptr<PacketSource> open_capture(const fs::path& file, const SensorInf
   return std::make_unique<PcapSource>(file, info, source_options);
 }
 
-std::unique_ptr<UdpSource> open_udp(const SensorInfo& info, const Config::Sensor& sensor) {
+/// The configured ports, else those of the metadata, else the usual ones.
+UdpPorts udp_ports(const std::optional<SensorInfo>& info, const Config::Sensor& sensor) {
+  UdpPorts ports;
+  if (info) ports = {to_port(info->lidar_port), to_port(info->imu_port)};
+  if (sensor.lidar_port > 0) ports.lidar = to_port(sensor.lidar_port);
+  if (sensor.imu_port > 0) ports.imu = to_port(sensor.imu_port);
+  return ports;
+}
+
+std::unique_ptr<UdpSource> open_udp(UdpPorts ports, const Config::Sensor& sensor) {
   UdpSourceOptions options;
   options.bind_address = sensor.bind_address;
-  options.source_address = sensor.source_address;
-  options.lidar_port =
-      static_cast<std::uint16_t>(sensor.lidar_port > 0 ? sensor.lidar_port : info.lidar_port);
-  options.imu_port =
-      static_cast<std::uint16_t>(sensor.imu_port > 0 ? sensor.imu_port : info.imu_port);
+  options.multicast_group = sensor.multicast_group;
+  options.source_address = source_filter(sensor);
+  options.lidar_port = ports.lidar;
+  options.imu_port = ports.imu;
   options.rcvbuf_bytes = sensor.rcvbuf_bytes;
   auto source = std::make_unique<UdpSource>(options);
   if (source->granted_rcvbuf_bytes() < sensor.rcvbuf_bytes) {
@@ -111,7 +123,7 @@ Input open_capture_input(const fs::path& file, const InputOptions& options, cons
   try {
     Input input;
     input.info = capture_info(options, config, file);
-    input.source = open_capture(file, input.info, options, config);
+    input.source = open_capture(file, *input.info, options, config);
     log_sentences(input.source->notices());
     input.options.lossless = true;
     input.options.source_name = fmt::format("pcap:{}", file.string());
@@ -147,13 +159,23 @@ Input open_synthetic_input(std::string_view what, const InputOptions& options) {
 
 Input open_live_input(const InputOptions& options, const Config& config) {
   Input input;
-  const fs::path metadata = metadata_file(options, config, {});
+  const bool metadata_given = !options.metadata.empty() || !config.sensor.metadata_file.empty();
   try {
-    input.info = load_sensor_info(metadata);
+    if (metadata_given || config.sensor.host.empty()) {
+      input.info = load_sensor_info(metadata_file(options, config, {}));
+    }
   } catch (const InputError& error) {
     throw ConfigError(error.what());
   }
-  auto source = open_udp(input.info, config.sensor);
+  const UdpPorts ports = udp_ports(input.info, config.sensor);
+  if (!config.sensor.host.empty()) {
+    input.sensor = sensor_link_options(config.sensor, ports);
+    input.sensor->take_metadata = !metadata_given;
+  }
+  if (const std::string idle = idle_settings(config.sensor); !idle.empty()) {
+    spdlog::warn("{}", idle);
+  }
+  auto source = open_udp(ports, config.sensor);
   input.options.source_name = fmt::format("udp:{}", source->lidar_port());
   input.source = std::move(source);
   return input;
@@ -174,7 +196,7 @@ Input open_input(const InputOptions& options, const Config& config) {
     throw ConfigError(
         fmt::format("--source {} is none of udp, pcap:FILE and synth:WORLD", options.source));
   }
-  log_sentences(input.info.warnings);
+  if (input.info) log_sentences(input.info->warnings);
   return input;
 }
 

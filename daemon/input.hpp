@@ -4,10 +4,12 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "daemon/config.hpp"
 #include "daemon/runtime.hpp"
+#include "daemon/sensor_settings.hpp"
 #include "driver/core/packet_source.hpp"
 #include "driver/core/sensor_info.hpp"
 
@@ -21,9 +23,10 @@ struct InputOptions {
 };
 
 struct Input {
-  SensorInfo info;
+  std::optional<SensorInfo> info;  ///< Null: the sensor will say.
   std::unique_ptr<PacketSource> source;
-  RuntimeOptions options;  ///< All but the session file.
+  RuntimeOptions options;                   ///< All but the session file.
+  std::optional<SensorLinkOptions> sensor;  ///< The session with it; null for none.
 };
 
 /// Opens the source. @throws ConfigError when options, metadata or capture cannot be used, plain

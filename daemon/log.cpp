@@ -14,6 +14,8 @@ namespace glint::daemon {
 namespace {
 
 constexpr std::int64_t kQuietNs = 10 * kNsPerSecond;
+/// More than these are forgotten when their time is over: some causes quote what others wrote.
+constexpr std::size_t kMostCauses = 100;
 
 /// "<4>": how the journal learns the severity of a line (sd-daemon(3)).
 class JournalPriority : public spdlog::custom_flag_formatter {
@@ -53,6 +55,9 @@ void set_up_logging(const std::string& level) {
 void set_log_level(const std::string& level) { spdlog::set_level(spdlog::level::from_str(level)); }
 
 bool LogLimiter::allow(const std::string& cause, std::int64_t now_ns) {
+  if (last_ns_.size() > kMostCauses) {
+    std::erase_if(last_ns_, [&](const auto& entry) { return now_ns - entry.second >= kQuietNs; });
+  }
   const auto [last, fresh] = last_ns_.try_emplace(cause, now_ns);
   if (!fresh && now_ns - last->second < kQuietNs) return false;
   last->second = now_ns;

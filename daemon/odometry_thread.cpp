@@ -2,9 +2,12 @@
 // Copyright 2026 The Glint Authors
 #include "daemon/odometry_thread.hpp"
 
+#include <charconv>
 #include <utility>
 
-#include "driver/core/packet_format.hpp"
+#include "daemon/protocol.hpp"
+#include "daemon/sensor_change.hpp"
+#include "driver/core/packet_view.hpp"
 
 namespace glint::daemon {
 namespace {
@@ -20,16 +23,49 @@ struct Overloaded : Handlers... {
 template <class... Handlers>
 Overloaded(Handlers...) -> Overloaded<Handlers...>;
 
+/// When a packet was finished, which is when its last column was measured: it cannot have been
+/// sent before. Null if it has no valid column.
+std::optional<SensorTime> end_time(const PacketView& packet) {
+  for (int i = packet.column_count() - 1; i >= 0; --i) {
+    if (packet.column(i).valid()) return packet.column(i).time();
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
-OdometryThread::OdometryThread(const SensorInfo& info, const Config& config, bool lossless,
-                               Crossings& crossings, Heartbeat& heartbeat, ScanListener on_scan)
-    : lossless_(lossless),
+OdometryThread::Stream::Stream(const UseSensorCommand& use, const slam::SlamConfig& config,
+                               const Eigen::Quaterniond& R_base_sensor)
+    : imu_format(*use.info),
+      assembler(*use.info),
+      clock_model(use.info->scan_period_ns()),
+      frontend(*use.info, config, stage_clock(), R_base_sensor) {
+  set_sensor(use);
+}
+
+void OdometryThread::Stream::set_sensor(const UseSensorCommand& use) {
+  info = use.info;
+  this_start = use.this_start;
+  const std::string& serial = info->serial_number;
+  serial_number = 0;
+  std::from_chars(serial.data(), serial.data() + serial.size(), serial_number);
+}
+
+bool OdometryThread::Stream::is_of_another_start(const PacketView& packet) const {
+  // The serial number shows that the packet is this sensor's and its header where it is looked for.
+  return this_start && info->init_id != 0 && packet.init_id() != info->init_id &&
+         serial_number != 0 && packet.serial_number() == serial_number;
+}
+
+OdometryThread::OdometryThread(const Config& config, bool lossless, Crossings& crossings,
+                               Heartbeat& heartbeat, EventLog& events, ScanListener on_scan)
+    : config_(config.slam),
+      lossless_(lossless),
+      R_base_sensor_(config.mount.T_base_sensor.rotation),
       crossings_(crossings),
       heartbeat_(heartbeat),
-      on_scan_(std::move(on_scan)),
-      assembler_(info),
-      frontend_(info, config.slam, stage_clock()) {
+      events_(events),
+      on_scan_(std::move(on_scan)) {
   state_.history = TrajectoryHistory(static_cast<std::size_t>(config.state.trajectory_poses));
   publish();
 }
@@ -38,11 +74,12 @@ void OdometryThread::run() {
   using PopResult = BoundedQueue<ReceivedPacket>::PopResult;
   ReceivedPacket received;
   PopResult result = PopResult::kTimeout;
+  apply_commands();  // A sensor that is known from the start is so before its first packet.
   while (result != PopResult::kClosed) {
     heartbeat_.beat();
     result = crossings_.packets.pop(received, kWait);
     if (result == PopResult::kItem) take_packet(received);
-    if (result == PopResult::kClosed) assembler_.flush();
+    if (result == PopResult::kClosed) flush();
     take_scans();
     publish_counters();
   }
@@ -53,24 +90,76 @@ void OdometryThread::run() {
 
 void OdometryThread::take_packet(const ReceivedPacket& received) {
   if (received.silence) {
-    assembler_.flush();
+    flush();
     return;
   }
-  last_host_time_ = received.packet.host_time;
+  if (!stream_) {
+    ++state_.early_packets;
+    return;
+  }
   last_arrival_ns_ = received.arrival_ns;
-  if (received.packet.bytes.size() == assembler_.format().imu_packet_bytes) {
-    ++state_.imu_packets;
+  ScanAssembler& assembler = stream_->assembler;
+  if (received.packet.bytes.size() == assembler.format().imu_packet_bytes) {
+    take_imu(received.packet.bytes);
+    return;
+  }
+  const auto view = PacketView::parse(assembler.format(), received.packet.bytes);
+  if (view) crossings_.packet_init_id.store(view->init_id(), std::memory_order_relaxed);
+  if (view && stream_->is_of_another_start(*view)) {
+    state_.refused.init_id = view->init_id();
+    ++state_.early_packets;
     return;
   }
   const std::int64_t start_ns = steady_now_ns();
   // What became of the packet is in the assembler's counters.
-  static_cast<void>(assembler_.push(received.packet.bytes));
+  const PacketVerdict verdict = assembler.push(received.packet.bytes);
   decode_ns_ += steady_now_ns() - start_ns;
+  note_refusal(received.packet.bytes, verdict);
+  if (view && verdict == PacketVerdict::kLidar) look_at_clock(*view, received.packet.host_time);
+}
+
+void OdometryThread::note_refusal(std::span<const std::byte> packet, PacketVerdict verdict) {
+  if (verdict == PacketVerdict::kBadSize) state_.refused.bytes = packet.size();
+  if (verdict != PacketVerdict::kForeign) return;
+  const auto view = PacketView::parse(stream_->assembler.format(), packet);
+  if (view) state_.refused.serial_number = view->serial_number();
+}
+
+void OdometryThread::take_imu(std::span<const std::byte> bytes) {
+  imu_samples_.clear();
+  if (!parse_imu_packet(stream_->imu_format, bytes, imu_samples_)) {
+    ++state_.imu.bad_packets;
+    return;
+  }
+  ++state_.imu.packets;
+  for (const ImuSample& sample : imu_samples_) gravity_.add(sample);
+}
+
+void OdometryThread::look_at_clock(const PacketView& packet, HostTime host_time) {
+  ClockModel& model = stream_->clock_model;
+  const auto time = end_time(packet);
+  const auto jump = time ? model.add(*time, host_time) : std::nullopt;
+  if (!jump) return;
+  Json fields = Json::object();
+  put_time(fields, *time);
+  fields["t_host_ns"] = host_time.ns;
+  fields["jump_ns"] = jump->jump_ns;
+  fields["offset_ns"] = jump->offset_ns;
+  fields["jumps"] = model.status().jumps;
+  events_.post({"clock", 0, std::move(fields)});
 }
 
 void OdometryThread::take_scans() {
   apply_commands();
-  while (const LidarScan* scan = assembler_.next()) process(*scan);
+  process_scans();
+}
+
+void OdometryThread::process_scans() {
+  while (const LidarScan* scan = stream_ ? stream_->assembler.next() : nullptr) process(*scan);
+}
+
+void OdometryThread::flush() {
+  if (stream_) stream_->assembler.flush();
 }
 
 void OdometryThread::process(const LidarScan& scan) {
@@ -78,27 +167,38 @@ void OdometryThread::process(const LidarScan& scan) {
     ++state_.paused_scans;
     return;
   }
-  const slam::OdometryEstimate& estimate = frontend_.process(scan);
+  slam::Frontend& frontend = stream_->frontend;
+  slam::OdometryEstimate estimate = frontend.process(scan);
+  state_.host_time = stream_->clock_model.to_host(estimate.stamp).value_or(HostTime{});
+  state_.clock = stream_->clock_model.status();
+  estimate.stamp = told_time(estimate.stamp);
   hand_over_keyframe();
 
   for (std::size_t i = 0; i < slam::kStageCount; ++i) {
-    const std::int64_t ns = frontend_.stage_times().wall_ns[i];
+    const std::int64_t ns = frontend.stage_times().wall_ns[i];
     if (ns > 0) state_.stages.stages[i].add(ns);
   }
   state_.stages[slam::Stage::kDecode].add(std::exchange(decode_ns_, 0));
   state_.history.append({estimate.stamp, estimate.T_odom_sensor, estimate.velocity, estimate.state,
-                         estimate.segment, estimate.frame_id});
+                         estimate.segment, estimate.frame_id, state_.host_time,
+                         state_.clock.sigma_ns});
   state_.estimate = estimate;
-  state_.host_time = last_host_time_;
   state_.arrival_ns = last_arrival_ns_;
   ++state_.scans;
   const auto snapshot = publish();
   if (on_scan_) on_scan_(snapshot);
 }
 
+SensorTime OdometryThread::told_time(SensorTime stamp) const {
+  const auto host_time = stream_->clock_model.to_host(stamp);
+  return stream_->info->clock == ClockSource::kHost && host_time ? SensorTime{host_time->ns}
+                                                                 : stamp;
+}
+
 void OdometryThread::hand_over_keyframe() {
-  std::optional<slam::Keyframe> keyframe = frontend_.take_keyframe();
+  std::optional<slam::Keyframe> keyframe = stream_->frontend.take_keyframe();
   if (!keyframe) return;
+  keyframe->estimate.stamp = told_time(keyframe->estimate.stamp);
   if (lossless_) {
     crossings_.keyframes.push_wait(*keyframe);
   } else {
@@ -112,19 +212,54 @@ void OdometryThread::apply_commands() {
   for (const Command& command : commands) {
     std::visit(Overloaded{[&](PauseCommand) { state_.paused = true; },
                           [&](ResumeCommand) { state_.paused = false; },
-                          [&](ResetOdometryCommand) { frontend_.reset(); },
+                          [&](ResetOdometryCommand) {
+                            if (stream_) stream_->frontend.reset();
+                          },
+                          [&](const UseSensorCommand& use) { use_sensor(use); },
                           [&](const slam::MapCorrection& c) { state_.correction = c; }},
                command);
   }
   if (!commands.empty()) publish();
 }
 
+void OdometryThread::use_sensor(const UseSensorCommand& use) {
+  state_.refused = {};
+  if (!stream_) {
+    stream_.emplace(use, config_, R_base_sensor_);
+    return;
+  }
+  if (stream_change(*stream_->info, *use.info).empty()) {
+    stream_->assembler.set_identity(*use.info);
+  } else {
+    flush();
+    process_scans();
+    stream_->assembler.change_sensor(*use.info);
+    stream_->frontend.change_sensor(*use.info);
+    stream_->imu_format = ImuPacketFormat(*use.info);
+  }
+  stream_->set_sensor(use);
+}
+
 void OdometryThread::publish_counters() {
   if (steady_now_ns() - published_ns_ > kCounterPeriodNs) publish();
 }
 
+void OdometryThread::tell_stream(const Stream& stream) {
+  state_.packets = stream.assembler.counters();
+  state_.packet_health = stream.assembler.health();
+  state_.clock = stream.clock_model.status();
+  // Without times of arrival there is none of this machine's to tell.
+  const bool unknown = stream.info->clock == ClockSource::kHost && !state_.clock.known;
+  state_.clock_source = unknown ? ClockSource::kInternal : stream.info->clock;
+}
+
 std::shared_ptr<const Snapshot> OdometryThread::publish() {
-  state_.packets = assembler_.counters();
+  if (stream_) tell_stream(*stream_);
+  state_.imu.rate_hz = gravity_.rate_hz();
+  state_.imu.up_mps2 = gravity_.up_mps2();
+  if (state_.imu.up_mps2) {
+    state_.imu.mount_tilt_deg = mount_tilt_deg(*state_.imu.up_mps2, R_base_sensor_);
+  }
   auto snapshot = std::make_shared<const Snapshot>(state_);
   crossings_.snapshot.store(snapshot);
   published_ns_ = steady_now_ns();

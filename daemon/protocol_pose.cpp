@@ -60,6 +60,14 @@ Json head_json(slam::TrackingState state, PoseFrames frames) {
               {"child", frames.base ? "base" : "sensor"}};
 }
 
+/// What the time of a pose is worth: where it comes from, and when it was on this machine.
+void put_clock(Json& out, ClockSource source, HostTime host_time, std::int64_t sigma_ns) {
+  out["clock"] = to_string(source);
+  if (host_time.ns == 0) return;  // Absent means unknown.
+  out["t_host_ns"] = host_time.ns;
+  out["clock_sigma_ns"] = sigma_ns;
+}
+
 [[noreturn]] void refuse_time(const TrajectoryHistory& history, SensorTime stamp) {
   if (history.first() == history.end()) {
     throw RpcError(kOutOfRange, "there is no pose yet", "at_ns");
@@ -79,7 +87,7 @@ Json past_pose_json(const Snapshot& snapshot, SensorTime stamp, PoseFrames frame
   if (!record) refuse_time(snapshot.history, stamp);
   Json out = head_json(record->state, frames);
   put_time(out, stamp);
-  out["clock"] = "sensor";
+  put_clock(out, snapshot.clock_source, record->host_time, record->clock_sigma_ns);
   put_pose(out, pose_in_frames(record->T_odom_sensor, frames, snapshot.correction, context));
   put_velocity(out, record->velocity, frames, context);
   put_map_correction(out, snapshot.correction);
@@ -114,8 +122,7 @@ Json newest_pose_json(const Snapshot& snapshot, PoseFrames frames, const PoseCon
   if (!snapshot.estimate) return out;
   const slam::OdometryEstimate& estimate = *snapshot.estimate;
   put_time(out, estimate.stamp);
-  out["t_host_ns"] = snapshot.host_time.ns;
-  out["clock"] = "sensor";
+  put_clock(out, snapshot.clock_source, snapshot.host_time, snapshot.clock.sigma_ns);
   out["age_ms"] = static_cast<double>(now_ns - snapshot.arrival_ns) * 1e-6;
   out["stale"] = is_stale(snapshot, now_ns, context.scan_period_ns);
   put_pose(out, pose_in_frames(estimate.T_odom_sensor, frames, snapshot.correction, context));
@@ -142,7 +149,9 @@ Json get_pose(const Json& params, const Snapshot& snapshot, const PoseContext& c
   if (predict_ms == 0.0 || !snapshot.estimate) return out;
   const slam::OdometryEstimate& estimate = *snapshot.estimate;
   const Pose predicted = estimate.T_odom_sensor * se3_exp(estimate.velocity * (predict_ms * 1e-3));
-  put_time(out, estimate.stamp + std::llround(predict_ms * 1e6));
+  const std::int64_t ahead_ns = std::llround(predict_ms * 1e6);
+  put_time(out, estimate.stamp + ahead_ns);
+  if (out.contains("t_host_ns")) out["t_host_ns"] = snapshot.host_time.ns + ahead_ns;
   put_pose(out, pose_in_frames(predicted, frames, snapshot.correction, context));
   out.erase("cov");  // That of the newest pose says nothing about what came after it.
   out["predicted_ms"] = predict_ms;

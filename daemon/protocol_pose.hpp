@@ -15,7 +15,7 @@ struct PoseFrames {
   bool base = false;  ///< Child base; else sensor.
 };
 
-/// What is constant while the service runs.
+/// What it takes to tell a pose beside the snapshot.
 struct PoseContext {
   Pose T_base_sensor;
   std::int64_t scan_period_ns = 0;

@@ -2,6 +2,7 @@
 // Copyright 2026 The Glint Authors
 #include "daemon/protocol_status.hpp"
 
+#include <fmt/format.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -30,16 +31,25 @@ Json counters_json(const RuntimeStatus& runtime) {
   const AssemblerCounters& c = snapshot.packets;
   return Json{{"received_packets", runtime.packets_received},
               {"kernel_drops", runtime.kernel_drops},
+              {"foreign_packets", runtime.foreign + c.bad_serial},
               {"queue_drops", runtime.packets.dropped},
+              {"early_packets", snapshot.early_packets},
               {"lidar_packets", c.packets},
-              {"imu_packets", snapshot.imu_packets},
+              {"imu_packets", snapshot.imu.packets},
+              {"bad_imu_packets", snapshot.imu.bad_packets},
               {"bad_size", c.bad_size},
               {"bad_type", c.bad_type},
               {"bad_serial", c.bad_serial},
+              {"corrupt_packets", c.corrupt_packets},
+              {"crc_mismatches", c.crc_mismatches},
               {"bad_columns", c.bad_column},
               {"late_packets", c.late_packets},
               {"duplicate_packets", c.duplicate_packets},
+              {"stray_packets", c.stray_packets},
+              {"zone_packets", c.zone_packets},
               {"missing_packets", c.missing_packets},
+              {"never_arrived", c.missing_packets},
+              {"clock_jumps", c.clock_jumps},
               {"sensor_restarts", c.restarts},
               {"scans", c.scans},
               {"incomplete_scans", c.incomplete_scans},
@@ -78,7 +88,64 @@ Json odometry_json(const slam::OdometryEstimate& estimate) {
               {"matches", estimate.matches},           {"inliers", estimate.inliers}};
 }
 
+/// What there is to say of the sensor, the nearest cause first.
+std::string sensor_error(const RuntimeStatus& runtime, const ServiceStatus& service) {
+  if (!runtime.source_error.empty()) return runtime.source_error;
+  if (!service.sensor_problem.empty()) return service.sensor_problem;
+  return refusal_sentence(runtime);
+}
+
+std::string_view sensor_state(const RuntimeStatus& runtime, const ServiceStatus& service) {
+  const bool over = runtime.source == SourceState::kFailed || runtime.source == SourceState::kEnded;
+  return service.session == nullptr || over ? to_string(runtime.source)
+                                            : to_string(service.session->state);
+}
+
+Json clock_json(const Snapshot& snapshot) {
+  Json out{{"source", to_string(snapshot.clock_source)}};
+  if (!snapshot.clock.known) return out;
+  out["offset_ns"] = snapshot.clock.offset_ns;
+  out["skew_ppm"] = snapshot.clock.skew_ppm;
+  out["sigma_ns"] = snapshot.clock.sigma_ns;
+  out["jumps"] = snapshot.clock.jumps;
+  return out;
+}
+
+Json imu_json(const ImuStatus& imu) {
+  Json out{{"rate_hz", imu.rate_hz}};
+  if (!imu.up_mps2) return out;
+  out["gravity_mps2"] = Json{imu.up_mps2->x(), imu.up_mps2->y(), imu.up_mps2->z()};
+  out["mount_tilt_deg"] = imu.mount_tilt_deg;
+  return out;
+}
+
 }  // namespace
+
+std::string refusal_sentence(const RuntimeStatus& runtime) {
+  if (!runtime.sensor) return {};
+  const SensorInfo& info = *runtime.sensor;
+  const RefusedPacket& refused = runtime.snapshot->refused;
+  if (refused.init_id != 0) {
+    return fmt::format(
+        "packets are of the sensor's start {}, metadata of its start {}; they are read anew",
+        refused.init_id, info.init_id);
+  }
+  // Beside the sensor's packets strange ones are no reason why nothing comes of it.
+  if (runtime.snapshot->packets.packets > 0) return {};
+  if (refused.serial_number != 0) {
+    return fmt::format(
+        "packets are of the sensor {}, metadata of {}; give the metadata of that sensor, or name "
+        "the wanted one with sensor.source_address",
+        refused.serial_number, info.serial_number);
+  }
+  if (refused.bytes == 0) return {};
+  return fmt::format(
+      "packets have {} bytes, those of the metadata's sensor ({} {}, {}) have {}; give the "
+      "metadata "
+      "of the sensor that sends them",
+      refused.bytes, info.product_line, info.serial_number, info.lidar_mode,
+      PacketFormat(info).packet_bytes);
+}
 
 std::string_view to_string(SourceState state) {
   switch (state) {
@@ -100,13 +167,19 @@ Json status_json(const RuntimeStatus& runtime, const ServiceStatus& service, std
   const Snapshot& snapshot = *runtime.snapshot;
   Json out{{"sensor", 0},
            {"state", slam::to_string(client_state(snapshot, now_ns, service.scan_period_ns))},
-           {"sensor_state", to_string(runtime.source)}};
-  if (!runtime.source_error.empty()) out["sensor_error"] = runtime.source_error;
+           {"sensor_state", sensor_state(runtime, service)}};
+  if (const std::string error = sensor_error(runtime, service); !error.empty()) {
+    out["sensor_error"] = error;
+  }
+  if (snapshot.packet_health) out["packet_health"] = packet_health_json(*snapshot.packet_health);
+  if (service.session != nullptr) out["sensor_session"] = session_json(*service.session, now_ns);
   if (snapshot.estimate) {
     put_time(out, snapshot.estimate->stamp);
     out["age_ms"] = static_cast<double>(now_ns - snapshot.arrival_ns) * kMsPerNs;
     out["odometry"] = odometry_json(*snapshot.estimate);
   }
+  out["clock"] = clock_json(snapshot);
+  if (snapshot.imu.packets > 0) out["imu"] = imu_json(snapshot.imu);
   out["map_epoch"] = snapshot.correction.epoch;
   const slam::MapSnapshot& map = *runtime.map->map;
   out["map"] = Json{{"revision", map.revision},

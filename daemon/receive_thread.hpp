@@ -13,29 +13,25 @@ namespace glint::daemon {
 /// Body of the receive thread: packets from the source into the packet queue. Owned by that thread.
 class ReceiveThread {
  public:
-  struct Options {
-    /// A full queue makes the source wait (replay) instead of dropping the oldest packet (live).
-    bool lossless = false;
-    /// A live stream without packets for so long is silent.
-    std::int64_t silence_ns = 0;
-  };
-
-  ReceiveThread(PacketSource& source, Options options, Crossings& crossings, Heartbeat& heartbeat)
-      : source_(source), options_(options), crossings_(crossings), heartbeat_(heartbeat) {}
+  /// `lossless`: a full queue makes the source wait (replay) instead of dropping the oldest packet
+  /// (live).
+  ReceiveThread(PacketSource& source, bool lossless, Crossings& crossings, Heartbeat& heartbeat)
+      : source_(source), lossless_(lossless), crossings_(crossings), heartbeat_(heartbeat) {}
 
   /// Until the source ends; closes the packet queue then.
   void run();
 
  private:
   void take_packet();
+  [[nodiscard]] bool is_sign_of_life() const;
   void tell_silence();
 
   PacketSource& source_;
-  const Options options_;
+  const bool lossless_;
   Crossings& crossings_;
   Heartbeat& heartbeat_;
   ReceivedPacket received_;
-  std::int64_t last_packet_ns_ = 0;
+  std::int64_t now_ns_ = 0;
 };
 
 }  // namespace glint::daemon

@@ -8,17 +8,22 @@
 #include <algorithm>
 #include <utility>
 
+#include "daemon/clock_settings.hpp"
+
 namespace glint::daemon {
 namespace {
 
 /// A live queue bridges two seconds, a machine's worst hiccup; in replay it only smooths.
 constexpr int kLiveScans = 20;
 constexpr int kReplayScans = 4;
-constexpr std::int64_t kMinSilenceNs = 300'000'000;
+/// Of a live queue while the sensor is not known: enough for any mode with 16 columns a packet.
+constexpr std::size_t kUnknownSensorPackets = 2560;
+constexpr double kUsualScanRateHz = 10.0;
 constexpr std::chrono::milliseconds kWorkerWait{500};
 
-std::size_t packet_capacity(const SensorInfo& info, bool lossless) {
-  const int packets_per_scan = info.columns_per_frame / std::max(1, info.columns_per_packet);
+std::size_t packet_capacity(const std::optional<SensorInfo>& info, bool lossless) {
+  if (!info) return kUnknownSensorPackets;
+  const int packets_per_scan = info->columns_per_frame / std::max(1, info->columns_per_packet);
   return static_cast<std::size_t>(std::max(1, packets_per_scan) *
                                   (lossless ? kReplayScans : kLiveScans));
 }
@@ -30,23 +35,24 @@ QueueStatus queue_status(const BoundedQueue<T>& queue) {
 
 }  // namespace
 
-Runtime::Runtime(const SensorInfo& info, const Config& config, std::unique_ptr<PacketSource> source,
-                 RuntimeOptions options)
-    : info_(info),
-      config_(config),
+Runtime::Runtime(const std::optional<SensorInfo>& info, const Config& config,
+                 std::unique_ptr<PacketSource> source, RuntimeOptions options)
+    : config_(config),
       options_(std::move(options)),
       source_(std::move(source)),
       crossings_(packet_capacity(info, options_.lossless)),
-      backend_(info_, config_, options_.session_file, crossings_, backend_heartbeat_) {}
+      backend_(config_, options_.session_file, crossings_, backend_heartbeat_) {
+  if (info) use_sensor(*info);
+}
 
 Runtime::~Runtime() { stop(); }
 
 void Runtime::start(ScanListener on_scan) {
-  const ReceiveThread::Options receive{options_.lossless,
-                                       std::max(3 * info_.scan_period_ns(), kMinSilenceNs)};
-  receive_ = std::make_unique<ReceiveThread>(*source_, receive, crossings_, receive_heartbeat_);
-  odometry_ = std::make_unique<OdometryThread>(info_, config_, options_.lossless, crossings_,
-                                               odometry_heartbeat_, std::move(on_scan));
+  receive_ =
+      std::make_unique<ReceiveThread>(*source_, options_.lossless, crossings_, receive_heartbeat_);
+  odometry_ =
+      std::make_unique<OdometryThread>(config_, options_.lossless, crossings_, odometry_heartbeat_,
+                                       *options_.events, std::move(on_scan));
   spawn("odometry", [this] { odometry_->run(); });
   spawn("backend", [this] { backend_.run(); });
   spawn("worker", [this] { work(); });
@@ -90,14 +96,41 @@ void Runtime::work() {
   worker_heartbeat_.finish();
 }
 
+void Runtime::use_sensor(const SensorInfo& info, bool this_start) {
+  const auto shared = std::make_shared<const SensorInfo>(with_clock_settings(info, config_.sensor));
+  crossings_.expected.lidar_bytes = PacketFormat(info).packet_bytes;
+  crossings_.expected.silence_ns =
+      std::max(3 * info.scan_period_ns(), ExpectedPackets::kLeastSilenceNs);
+  crossings_.sensor.store(shared);
+  post(UseSensorCommand{shared, this_start});
+}
+
+double Runtime::scan_rate_hz() const {
+  const auto info = sensor();
+  return info ? info->scan_rate_hz : kUsualScanRateHz;
+}
+
+std::int64_t Runtime::scan_period_ns() const {
+  return static_cast<std::int64_t>(1e9 / scan_rate_hz());
+}
+
+LastPacket Runtime::last_packet() const {
+  return {crossings_.source.last_packet_ns.load(), crossings_.packet_init_id.load()};
+}
+
 RuntimeStatus Runtime::status() const {
   RuntimeStatus status;
   status.snapshot = crossings_.snapshot.load();
   status.map = crossings_.map.load();
   status.source = crossings_.source.state.load();
   if (status.source == SourceState::kFailed) status.source_error = crossings_.source.error;
+  if (status.source == SourceState::kFailed || status.source == SourceState::kEnded) {
+    status.source_notices = crossings_.source.notices;
+  }
+  status.sensor = sensor();
   status.packets_received = crossings_.source.packets.load();
   status.kernel_drops = crossings_.source.kernel_drops.load();
+  status.foreign = crossings_.source.foreign.load();
   status.packets = queue_status(crossings_.packets);
   status.keyframes = queue_status(crossings_.keyframes);
   return status;

@@ -6,12 +6,15 @@
 #include <filesystem>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "daemon/backend_thread.hpp"
 #include "daemon/config.hpp"
 #include "daemon/crossings.hpp"
+#include "daemon/event_log.hpp"
 #include "daemon/odometry_thread.hpp"
 #include "daemon/receive_thread.hpp"
 #include "driver/core/sensor_info.hpp"
@@ -24,6 +27,8 @@ struct RuntimeOptions {
   bool lossless = false;
   std::filesystem::path session_file;  ///< Empty: no session is kept.
   std::string source_name;             ///< For status: "udp:7502", "pcap:drive.pcap".
+  /// Where everyone posts events; never null.
+  std::shared_ptr<EventLog> events = std::make_shared<EventLog>();
 };
 
 /// What fills a queue.
@@ -33,14 +38,23 @@ struct QueueStatus {
   std::uint64_t dropped = 0;
 };
 
+/// The latest lidar packet.
+struct LastPacket {
+  std::int64_t arrival_ns = 0;  ///< Steady clock; 0: none has come.
+  std::uint32_t init_id = 0;    ///< 0: its format has none, or it was not looked at yet.
+};
+
 /// Everything there is to tell at one moment. Value type.
 struct RuntimeStatus {
   std::shared_ptr<const Snapshot> snapshot;  ///< Never null.
   std::shared_ptr<const MapState> map;       ///< Never null.
   SourceState source = SourceState::kWaiting;
   std::string source_error;
+  std::vector<std::string> source_notices;   ///< What the source had to say at its end.
+  std::shared_ptr<const SensorInfo> sensor;  ///< Null while it is not known.
   std::uint64_t packets_received = 0;
   std::uint64_t kernel_drops = 0;
+  std::uint64_t foreign = 0;  ///< Datagrams of other senders.
   QueueStatus packets;
   QueueStatus keyframes;
 };
@@ -50,9 +64,10 @@ struct RuntimeStatus {
 /// start().
 class Runtime {
  public:
-  /// @throws InputError when the session file cannot be created.
-  Runtime(const SensorInfo& info, const Config& config, std::unique_ptr<PacketSource> source,
-          RuntimeOptions options);
+  /// Without `info` packets are dropped until use_sensor(). @throws InputError when the session
+  /// file cannot be created.
+  Runtime(const std::optional<SensorInfo>& info, const Config& config,
+          std::unique_ptr<PacketSource> source, RuntimeOptions options);
   /// Stops.
   ~Runtime();
   Runtime(const Runtime&) = delete;
@@ -68,6 +83,12 @@ class Runtime {
   [[nodiscard]] std::shared_ptr<const Snapshot> snapshot() const {
     return crossings_.snapshot.load();
   }
+  /// Whose packets come from here on. Of another layout: tracking restarts in a new segment, the
+  /// map is kept. `this_start`: the sensor has said it itself, so packets of another of its starts
+  /// wait for the next call. From one thread only.
+  void use_sensor(const SensorInfo& info, bool this_start = false);
+  /// From here on only packets from this IP address are taken.
+  void set_source_address(const std::string& address) { source_->set_source_address(address); }
   void post(Command command) { crossings_.commands.post(std::move(command)); }
   /// Runs a job on the worker thread. False when too many are waiting. From one thread only.
   [[nodiscard]] bool submit(Job job) { return crossings_.jobs.try_push(job); }
@@ -77,14 +98,22 @@ class Runtime {
   /// Why a thread ended as it should not; empty while all is well.
   [[nodiscard]] std::string fault() const;
 
-  [[nodiscard]] const SensorInfo& info() const { return info_; }
+  /// Null while the sensor is not known.
+  [[nodiscard]] std::shared_ptr<const SensorInfo> sensor() const {
+    return crossings_.sensor.load();
+  }
+  [[nodiscard]] double scan_rate_hz() const;
+  [[nodiscard]] std::int64_t scan_period_ns() const;
+  /// A live stream without packets for so long is silent.
+  [[nodiscard]] std::int64_t silence_ns() const { return crossings_.expected.silence_ns; }
+  [[nodiscard]] LastPacket last_packet() const;
   [[nodiscard]] const RuntimeOptions& options() const { return options_; }
+  [[nodiscard]] EventLog& events() const { return *options_.events; }
 
  private:
   void spawn(const char* name, std::function<void()> body);
   void work();
 
-  const SensorInfo info_;
   const Config config_;
   const RuntimeOptions options_;
   const std::unique_ptr<PacketSource> source_;

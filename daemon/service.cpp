@@ -36,14 +36,19 @@ RuntimeOptions with_session(RuntimeOptions options, const Config& config) {
 
 }  // namespace
 
-Service::Service(const Config& config, Input input, Reload reload)
+Service::Service(boost::asio::io_context& io, const Config& config, Input input, Reload reload)
     : config_(config),
       reload_(std::move(reload)),
+      io_(io),
       runtime_(input.info, config, std::move(input.source), with_session(input.options, config)),
       api_(io_, runtime_, config),
       server_(io_, api_, config),
       signals_(io_, SIGINT, SIGTERM, SIGHUP),
-      timer_(io_) {}
+      timer_(io_) {
+  if (!input.sensor) return;
+  sensor_.emplace(io_, runtime_, *input.sensor);
+  api_.set_sensor(*sensor_);
+}
 
 int Service::run() {
   runtime_.start([this](const auto& snapshot) { server_.publish(snapshot); });
@@ -57,7 +62,7 @@ int Service::run() {
   systemd::notify_ready();
   io_.run();
   runtime_.stop();
-  health_.look(runtime_.status(), steady_now_ns(), runtime_.info().scan_period_ns());
+  look_at_health();
   spdlog::info("stopped after {} poses", runtime_.snapshot()->scans);
   return exit_code_;
 }
@@ -93,15 +98,19 @@ void Service::reload() {
   systemd::notify_ready();
 }
 
+RuntimeStatus Service::look_at_health() {
+  RuntimeStatus status = runtime_.status();
+  if (!sensor_) health_.look_at_source(status, runtime_.events());
+  health_.look(status, steady_now_ns(), runtime_.scan_period_ns());
+  return status;
+}
+
 void Service::supervise() {
-  const std::int64_t now_ns = steady_now_ns();
-  const RuntimeStatus status = runtime_.status();
-  const std::int64_t period_ns = runtime_.info().scan_period_ns();
-  health_.look(status, now_ns, period_ns);
+  const RuntimeStatus status = look_at_health();
+  const Json told = api_.status();
   systemd::notify_status(
-      fmt::format("{}, sensor {}, {} clients",
-                  slam::to_string(client_state(*status.snapshot, now_ns, period_ns)),
-                  to_string(status.source), server_.client_count()));
+      fmt::format("{}, sensor {}, {} clients", told["state"].get<std::string_view>(),
+                  told["sensor_state"].get<std::string_view>(), server_.client_count()));
   if (const std::string fault = runtime_.fault(); !fault.empty()) {
     spdlog::critical("stopping: {}", fault);
     return stop(1);

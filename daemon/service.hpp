@@ -6,24 +6,27 @@
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <functional>
+#include <optional>
 
 #include "daemon/api.hpp"
 #include "daemon/config.hpp"
 #include "daemon/health_log.hpp"
 #include "daemon/input.hpp"
 #include "daemon/runtime.hpp"
+#include "daemon/sensor_link.hpp"
 #include "daemon/server.hpp"
 
 namespace glint::daemon {
 
-/// The daemon: pipeline, server, signals and supervision, on the caller's thread.
+/// The daemon: pipeline, session with the sensor, server, signals and supervision, on the caller's
+/// thread.
 class Service {
  public:
   /// Reads the configuration again, for SIGHUP. @throws ConfigError.
   using Reload = std::function<Config()>;
 
-  /// Listens from here on. @throws as open_input(), Server and Runtime do.
-  Service(const Config& config, Input input, Reload reload);
+  /// Listens from here on. `io` must outlive it. @throws as open_input(), Server and Runtime do.
+  Service(boost::asio::io_context& io, const Config& config, Input input, Reload reload);
 
   /// Serves until SIGTERM, SIGINT or a fault. Returns the exit code: 0, or 1 after a fault.
   int run();
@@ -32,12 +35,14 @@ class Service {
   void wait_for_signal();
   void reload();
   void supervise();
+  RuntimeStatus look_at_health();
   void stop(int exit_code);
 
   Config config_;
   const Reload reload_;
-  boost::asio::io_context io_{1};
+  boost::asio::io_context& io_;
   Runtime runtime_;
+  std::optional<SensorLink> sensor_;  ///< Null without a session with the sensor.
   Api api_;
   Server server_;
   boost::asio::signal_set signals_;

@@ -9,6 +9,8 @@
 
 #include "daemon/stage_stats.hpp"
 #include "daemon/trajectory_history.hpp"
+#include "driver/core/clock_model.hpp"
+#include "driver/core/clock_source.hpp"
 #include "driver/core/scan_assembler.hpp"
 #include "slam/backend.hpp"
 #include "slam/map.hpp"
@@ -16,18 +18,41 @@
 
 namespace glint::daemon {
 
+/// The last packet that was not taken because metadata say otherwise. Value type.
+struct RefusedPacket {
+  std::size_t bytes = 0;            ///< Of another size than the sensor's; 0: there was none.
+  std::uint64_t serial_number = 0;  ///< Of another sensor; 0: there was none.
+  std::uint32_t init_id = 0;        ///< Of another start of the sensor; 0: there was none.
+};
+
+/// What the IMU tells of the sensor's mounting. Value type.
+struct ImuStatus {
+  std::uint64_t packets = 0;
+  std::uint64_t bad_packets = 0;  ///< Of an IMU packet's size, but none.
+  double rate_hz = 0.0;           ///< Measurements a second.
+  /// Acceleration measured at rest, m/s^2, sensor frame: it points up.
+  std::optional<Eigen::Vector3d> up_mps2;
+  double mount_tilt_deg = 0.0;  ///< Between it and the up of mount.T_base_sensor.
+};
+
 /// What odometry knows after a scan. Immutable once published; any thread may read it.
 struct Snapshot {
   std::uint64_t scans = 0;  ///< Scans that gave an estimate.
   std::optional<slam::OdometryEstimate> estimate;
   slam::MapCorrection correction;
-  HostTime host_time;           ///< Arrival of the packet that completed the scan.
-  std::int64_t arrival_ns = 0;  ///< The same instant on the steady clock of this machine.
+  HostTime host_time;           ///< The estimate's stamp by the clock model; 0 if unknown.
+  std::int64_t arrival_ns = 0;  ///< Arrival of the packet that completed the scan, steady clock.
+  ClockSource clock_source = ClockSource::kInternal;  ///< What the stamps are taken from.
+  ClockStatus clock;
   bool paused = false;
   TrajectoryHistory history;
 
   AssemblerCounters packets;
-  std::uint64_t imu_packets = 0;
+  RefusedPacket refused;
+  std::optional<PacketHealth> packet_health;  ///< Of the latest lidar packet that says it.
+  /// Came before the metadata of the sensor, or of this start of it; dropped.
+  std::uint64_t early_packets = 0;
+  ImuStatus imu;
   std::uint64_t paused_scans = 0;       ///< Scans not used because of a pause.
   std::uint64_t dropped_keyframes = 0;  ///< The back end was too slow for them.
   StageStats stages;

@@ -18,21 +18,24 @@ constexpr double kMaxStatusRateHz = 10.0;
 struct Topics {
   bool pose = false;
   bool status = false;
+  bool events = false;
 };
 
 Topics parse_topics(const Json& params, bool required) {
   const Json* list = find_param(params, "topics");
-  if (list == nullptr && !required) return {true, true};
+  if (list == nullptr && !required) return {true, true, true};
   Topics topics;
   bool ok = list != nullptr && list->is_array() && !list->empty();
   if (ok) {
     for (const Json& topic : *list) {
       topics.pose = topics.pose || topic == "pose";
       topics.status = topics.status || topic == "status";
-      ok = ok && (topic == "pose" || topic == "status");
+      topics.events = topics.events || topic == "events";
+      ok = ok && (topic == "pose" || topic == "status" || topic == "events");
     }
   }
-  if (!ok) throw RpcError(kInvalidParams, "topics must be a list of pose, status", "topics");
+  if (!ok)
+    throw RpcError(kInvalidParams, "topics must be a list of pose, status, events", "topics");
   return topics;
 }
 
@@ -58,6 +61,10 @@ Json Subscriptions::subscribe(const Json& params) {
     topic.period_ns = period_ns(topic.rate_hz);
     status_ = topic;
   }
+  if (topics.events) {
+    const std::uint64_t begin = api_.events().end();
+    events_ = EventTopic{begin, begin, 0};
+  }
   return echo();
 }
 
@@ -65,6 +72,7 @@ Json Subscriptions::unsubscribe(const Json& params) {
   const Topics topics = parse_topics(params, false);
   if (topics.pose) pose_.reset();
   if (topics.status) status_.reset();
+  if (topics.events) events_.reset();
   return echo();
 }
 
@@ -81,6 +89,10 @@ Json Subscriptions::echo() const {
   if (status_) {
     topics.push_back("status");
     settings["status"] = Json{{"rate_hz", status_->rate_hz}};
+  }
+  if (events_) {
+    topics.push_back("events");
+    settings["events"] = Json::object();
   }
   Json out = api_.head();
   out["topics"] = std::move(topics);
@@ -115,21 +127,42 @@ void Subscriptions::tick(std::int64_t now_ns) {
 }
 
 std::optional<std::string> Subscriptions::next_line() {
-  if (pose_ && !pose_->waiting.empty()) {
-    const WaitingPose waiting = std::move(pose_->waiting.front());
-    pose_->waiting.pop_front();
-    Json params = api_.pose(*waiting.snapshot, pose_->frames);
-    params["seq"] = waiting.seq;
-    params["missed"] = pose_->missed;
-    return notification_line("pose", params);
-  }
-  if (status_ && std::exchange(status_->waiting, false)) {
-    Json params = api_.status();
-    params["seq"] = status_->seq - 1;
-    params["missed"] = status_->missed;
-    return notification_line("status", params);
-  }
-  return std::nullopt;
+  auto line = next_event();  // They are few, and the newest poses come soon enough.
+  if (!line) line = next_pose();
+  if (!line) line = next_status();
+  return line;
+}
+
+std::optional<std::string> Subscriptions::next_event() {
+  if (!events_) return std::nullopt;
+  const std::uint64_t wanted = events_->next;
+  auto event = api_.events().next(events_->next);
+  if (!event) return std::nullopt;
+  const std::uint64_t number = events_->next - 1;
+  events_->missed += number - wanted;
+  Json params{{"sensor", event->sensor}, {"kind", std::move(event->kind)}};
+  params.update(event->fields);
+  params["seq"] = number - events_->begin;
+  params["missed"] = events_->missed;
+  return notification_line("event", params);
+}
+
+std::optional<std::string> Subscriptions::next_pose() {
+  if (!pose_ || pose_->waiting.empty()) return std::nullopt;
+  const WaitingPose waiting = std::move(pose_->waiting.front());
+  pose_->waiting.pop_front();
+  Json params = api_.pose(*waiting.snapshot, pose_->frames);
+  params["seq"] = waiting.seq;
+  params["missed"] = pose_->missed;
+  return notification_line("pose", params);
+}
+
+std::optional<std::string> Subscriptions::next_status() {
+  if (!status_ || !std::exchange(status_->waiting, false)) return std::nullopt;
+  Json params = api_.status();
+  params["seq"] = status_->seq - 1;
+  params["missed"] = status_->missed;
+  return notification_line("status", params);
 }
 
 }  // namespace glint::daemon

@@ -24,7 +24,7 @@ class Subscriptions {
   /// subscribe and unsubscribe; the result is the echo of what is now in effect. @throws RpcError.
   Json subscribe(const Json& params);
   Json unsubscribe(const Json& params);
-  [[nodiscard]] bool empty() const { return !pose_ && !status_; }
+  [[nodiscard]] bool empty() const { return !pose_ && !status_ && !events_; }
 
   /// A new pose is there.
   void offer(const std::shared_ptr<const Snapshot>& snapshot);
@@ -57,11 +57,21 @@ class Subscriptions {
     bool waiting = false;
   };
 
+  struct EventTopic {
+    std::uint64_t begin = 0;  ///< Number of the first event of the subscription; what waits stays
+    std::uint64_t next = 0;   ///< in the log, from number `next` on.
+    std::uint64_t missed = 0;
+  };
+
   [[nodiscard]] Json echo() const;
+  std::optional<std::string> next_pose();
+  std::optional<std::string> next_status();
+  std::optional<std::string> next_event();
 
   const Api& api_;
   std::optional<PoseTopic> pose_;
   std::optional<StatusTopic> status_;
+  std::optional<EventTopic> events_;
 };
 
 }  // namespace glint::daemon

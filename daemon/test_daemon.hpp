@@ -21,9 +21,13 @@
 
 namespace glint::test {
 
-/// A live source that a test feeds. Thread-safe.
+/// A live source that a test feeds. The packets are received evenly in time, as a sensor sends
+/// them, from kFakeStart_ns on. Thread-safe.
 class FakeSource : public PacketSource {
  public:
+  static constexpr std::int64_t kFakeStart_ns = 1'790'000'000'000'000'000;
+
+  explicit FakeSource(std::int64_t packet_gap_ns) : packet_gap_ns_(packet_gap_ns) {}
   void feed(const Bytes& bytes) {
     const std::lock_guard lock(mutex_);
     waiting_.push_back(bytes);
@@ -37,7 +41,7 @@ class FakeSource : public PacketSource {
     packet.bytes = std::move(waiting_.front());
     waiting_.pop_front();
     packet.port = 7502;
-    packet.host_time.ns = ++count_;
+    packet.host_time.ns = kFakeStart_ns + packet_gap_ns_ * count_++;
     return SourceStatus::kPacket;
   }
   void stop() override {
@@ -47,6 +51,7 @@ class FakeSource : public PacketSource {
   }
 
  private:
+  const std::int64_t packet_gap_ns_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Bytes> waiting_;
@@ -59,7 +64,8 @@ class TestDaemon {
  public:
   explicit TestDaemon(daemon::Config config = {}, daemon::RuntimeOptions options = {}) {
     config.server.listen = "127.0.0.1:0";
-    auto source = std::make_unique<FakeSource>();
+    auto source = std::make_unique<FakeSource>(info_.scan_period_ns() * info_.columns_per_packet /
+                                               info_.columns_per_frame);
     source_ = source.get();
     runtime_ = std::make_unique<daemon::Runtime>(info_, config, std::move(source), options);
     api_ = std::make_unique<daemon::Api>(io_, *runtime_, config);

@@ -38,7 +38,7 @@ std::uint16_t brightness(const Eigen::Vector3d& point) {
   return static_cast<std::uint16_t>(50 + hash % 900);
 }
 
-LidarScan room_scan(const SensorInfo& info, const XyzLut& lut, int k) {
+LidarScan scan_of_room(const SensorInfo& info, const XyzLut& lut, int k) {
   LidarScan scan{PacketFormat(info)};
   scan.frame_id = static_cast<std::uint16_t>(k);
   const Eigen::Vector3d position(kSpeedMPerScan * k, 0.0, 0.0);
@@ -61,11 +61,13 @@ LidarScan room_scan(const SensorInfo& info, const XyzLut& lut, int k) {
 
 SensorInfo room_sensor() { return make_sensor(LidarProfile::kRng19Rfl8Sig16Nir16, 64, 512); }
 
+LidarScan room_scan(const SensorInfo& info, int k) { return scan_of_room(info, XyzLut(info), k); }
+
 std::vector<Bytes> room_packets(const SensorInfo& info, int count) {
   const XyzLut lut(info);
   std::vector<Bytes> packets;
   for (int k = 0; k < count; ++k) {
-    for (Bytes& packet : encode(info, room_scan(info, lut, k)))
+    for (Bytes& packet : encode(info, scan_of_room(info, lut, k)))
       packets.push_back(std::move(packet));
   }
   return packets;

@@ -13,8 +13,11 @@ namespace glint::test {
 /// The sensor of the daemon's tests: small, RNG19.
 SensorInfo room_sensor();
 
-/// Packets of `count` scans of a sensor that drifts through a box-shaped room with patterned walls;
-/// frame ids 0, 1, 2, ... Deterministic.
+/// The k-th scan of a sensor that drifts through a box-shaped room with patterned walls.
+/// Deterministic.
+LidarScan room_scan(const SensorInfo& info, int k);
+
+/// Packets of `count` scans of that sensor, frame ids 0, 1, 2, ...
 std::vector<Bytes> room_packets(const SensorInfo& info, int count);
 
 }  // namespace glint::test

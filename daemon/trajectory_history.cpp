@@ -3,6 +3,7 @@
 #include "daemon/trajectory_history.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace glint::daemon {
 namespace {
@@ -94,6 +95,11 @@ std::optional<PoseRecord> pose_at(const TrajectoryHistory& history, SensorTime s
   out.stamp = stamp;
   out.T_odom_sensor = interpolate(a.T_odom_sensor, b.T_odom_sensor, fraction);
   out.velocity = a.velocity + fraction * (b.velocity - a.velocity);
+  if (a.host_time.ns != 0 && b.host_time.ns != 0) {
+    out.host_time =
+        a.host_time + std::llround(fraction * static_cast<double>(b.host_time - a.host_time));
+  }
+  out.clock_sigma_ns = std::max(a.clock_sigma_ns, b.clock_sigma_ns);
   if (precedence(a.state) < precedence(b.state)) out.state = a.state;
   return out;
 }

@@ -7,28 +7,19 @@
 #include <string>
 
 #include "driver/core/packet_source.hpp"
+#include "driver/udp_socket.hpp"
 
 namespace glint {
 
-struct UdpSourceOptions {
-  /// Address of the interface to listen on, IPv4 or IPv6; empty: all of them, both families.
-  std::string bind_address;
+struct UdpSourceOptions : UdpSocketOptions {
   std::uint16_t lidar_port = 7502;  ///< 0: any free port, see UdpSource::lidar_port().
   std::uint16_t imu_port = 7503;    ///< 0: no IMU port is opened. May equal lidar_port.
-  /// Datagrams from any other address are counted and dropped; empty: all are taken.
+  /// See UdpSource::set_source_address().
   std::string source_address;
-  int rcvbuf_bytes = 8 << 20;  ///< Asked for; see UdpSource::granted_rcvbuf_bytes().
 };
 
-struct UdpCounters {
-  std::uint64_t foreign = 0;       ///< From another address than source_address.
-  std::uint64_t truncated = 0;     ///< Larger than a UDP datagram's buffer; cut by the kernel.
-  std::uint64_t kernel_drops = 0;  ///< Dropped by the kernel, its receive buffer being full.
-};
-
-/// Live datagrams of one sensor, with the kernel's times of arrival. The ports are held
-/// exclusively, so no second program can take packets away. read() and counters() from one thread;
-/// stop() and kernel_drops() from any.
+/// Live datagrams of one sensor in the order of their arrival, with the kernel's times of it. How
+/// ports are held, see UdpSocket. read() from one thread, everything else from any.
 class UdpSource final : public PacketSource {
  public:
   /// Opens and binds the sockets.
@@ -41,9 +32,16 @@ class UdpSource final : public PacketSource {
   SourceStatus read(RawPacket& packet) override;
   void stop() override;
   [[nodiscard]] std::uint64_t kernel_drops() const override;
+  [[nodiscard]] std::uint64_t foreign() const override;
+  /// From the thread of read() only.
   [[nodiscard]] const char* error() const override;
 
-  [[nodiscard]] UdpCounters counters() const;
+  /// From now on, datagrams from other addresses are counted as foreign and dropped; empty: all
+  /// are taken. @throws InputError when it is no address.
+  void set_source_address(const std::string& address) override;
+
+  /// Datagrams larger than UDP allows, which the kernel cut and which were dropped.
+  [[nodiscard]] std::uint64_t truncated() const;
   /// The ports bound, where options asked for any.
   [[nodiscard]] std::uint16_t lidar_port() const;
   /// Bytes of receive buffer that the kernel grants to each socket, in the unit of

@@ -2,76 +2,33 @@
 // Copyright 2026 The Glint Authors
 #include "driver/udp_source.hpp"
 
-#include <arpa/inet.h>
 #include <gmock/gmock.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <chrono>
-#include <cstring>
 #include <future>
+#include <stdexcept>
+#include <thread>
 #include <vector>
 
 #include "driver/core/error.hpp"
+#include "driver/test_udp.hpp"
 
 namespace glint {
 namespace {
 
 using namespace std::chrono_literals;
+using test::any_port;
+using test::first_byte;
+using test::free_port;
+using test::payload;
+using test::UdpSender;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-// Sends datagrams to a port of this machine, over IPv4 or IPv6.
-class Sender {
- public:
-  explicit Sender(int family = AF_INET) : family_(family), fd_(socket(family, SOCK_DGRAM, 0)) {}
-  ~Sender() { close(fd_); }
-  Sender(const Sender&) = delete;
-  Sender& operator=(const Sender&) = delete;
-
-  bool send(std::uint16_t port, const std::vector<std::byte>& bytes) const {
-    sockaddr_storage to{};
-    socklen_t size = 0;
-    if (family_ == AF_INET6) {
-      sockaddr_in6 v6{};
-      v6.sin6_family = AF_INET6;
-      v6.sin6_port = htons(port);
-      v6.sin6_addr = in6addr_loopback;
-      std::memcpy(&to, &v6, size = sizeof v6);
-    } else {
-      sockaddr_in v4{};
-      v4.sin_family = AF_INET;
-      v4.sin_port = htons(port);
-      v4.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-      std::memcpy(&to, &v4, size = sizeof v4);
-    }
-    return sendto(fd_, bytes.data(), bytes.size(), 0, reinterpret_cast<sockaddr*>(&to), size) ==
-           static_cast<ssize_t>(bytes.size());
-  }
-
- private:
-  int family_;
-  int fd_;
-};
-
-UdpSourceOptions any_port() {
-  UdpSourceOptions options;
-  options.lidar_port = 0;
-  options.imu_port = 0;
-  return options;
-}
-
-std::uint16_t free_port() { return UdpSource(any_port()).lidar_port(); }
-
-std::vector<std::byte> payload(std::size_t size, int value) {
-  return std::vector<std::byte>(size, static_cast<std::byte>(value));
-}
-
 TEST(UdpSource, DatagramsComeWithPortAndTimeOfArrival) {
   UdpSource source(any_port());
-  const Sender sender;
+  const UdpSender sender;
   ASSERT_TRUE(sender.send(source.lidar_port(), payload(12'608, 7)));
   RawPacket packet;
   ASSERT_EQ(source.read(packet), SourceStatus::kPacket);
@@ -84,46 +41,154 @@ TEST(UdpSource, DatagramsComeWithPortAndTimeOfArrival) {
 
 TEST(UdpSource, BothFamiliesReachOneSocket) {
   UdpSource source(any_port());
-  const Sender sender(AF_INET6);
-  if (!sender.send(source.lidar_port(), payload(48, 1))) GTEST_SKIP() << "no IPv6 on this machine";
-  RawPacket packet;
-  ASSERT_EQ(source.read(packet), SourceStatus::kPacket);
-  ASSERT_TRUE(Sender().send(source.lidar_port(), payload(48, 2)));
-  ASSERT_EQ(source.read(packet), SourceStatus::kPacket);
-  EXPECT_EQ(packet.bytes, payload(48, 2));
+  try {
+    ASSERT_TRUE(UdpSender("::1").send(source.lidar_port(), payload(48, 1)));
+  } catch (const std::runtime_error&) {
+    GTEST_SKIP() << "no IPv6 on this machine";
+  }
+  EXPECT_EQ(first_byte(source), 1);
+  ASSERT_TRUE(UdpSender().send(source.lidar_port(), payload(48, 2)));
+  EXPECT_EQ(first_byte(source), 2);
 }
 
-TEST(UdpSource, ImuPortIsReadToo) {
+TEST(UdpSource, DatagramsOfEverySizeAreWhole) {
+  UdpSource source(any_port());
+  const UdpSender sender;
+  const std::vector<std::size_t> sizes{1, 48, 12'608, 48, 24'896, 0, 65'507, 12'608, 65'507};
+  // First one by one, then all in one batch.
+  for (const bool batched : {false, true}) {
+    RawPacket packet;
+    int value = 0;
+    for (std::size_t size : sizes) {
+      ASSERT_TRUE(sender.send(source.lidar_port(), payload(size, ++value)));
+      if (batched) continue;
+      ASSERT_EQ(source.read(packet), SourceStatus::kPacket);
+      EXPECT_EQ(packet.bytes, payload(size, value));
+    }
+    for (std::size_t i = 0; batched && i < sizes.size(); ++i) {
+      ASSERT_EQ(source.read(packet), SourceStatus::kPacket);
+      EXPECT_EQ(packet.bytes, payload(sizes[i], static_cast<int>(i) + 1));
+    }
+  }
+}
+
+TEST(UdpSource, MoreThanABatchComesInOrder) {
+  UdpSource source(any_port());
+  const UdpSender sender;
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(sender.send(source.lidar_port(), payload(1000, i)));
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(first_byte(source), i);
+  EXPECT_EQ(first_byte(source), std::nullopt);
+}
+
+TEST(UdpSource, BothPortsComeInTheOrderOfArrival) {
   UdpSourceOptions options = any_port();
   options.imu_port = free_port();
   UdpSource source(options);
-  const Sender sender;
-  // A flood on the lidar port must not hold back the other.
-  for (int i = 0; i < 20; ++i) ASSERT_TRUE(sender.send(source.lidar_port(), payload(100, i)));
-  ASSERT_TRUE(sender.send(options.imu_port, payload(48, 99)));
-  RawPacket packet;
-  ASSERT_EQ(source.read(packet), SourceStatus::kPacket);
-  if (packet.port != options.imu_port) {
-    ASSERT_EQ(source.read(packet), SourceStatus::kPacket);
+  const UdpSender sender;
+  for (int i = 0; i < 30; ++i) {
+    const bool imu = i % 3 == 2;
+    ASSERT_TRUE(sender.send(imu ? options.imu_port : source.lidar_port(), payload(100, i)));
   }
-  EXPECT_EQ(packet.port, options.imu_port);
-  EXPECT_EQ(packet.bytes, payload(48, 99));
+  RawPacket packet;
+  HostTime last;
+  for (int i = 0; i < 30; ++i) {
+    ASSERT_EQ(source.read(packet), SourceStatus::kPacket);
+    EXPECT_EQ(packet.bytes, payload(100, i));
+    EXPECT_EQ(packet.port, i % 3 == 2 ? options.imu_port : source.lidar_port());
+    EXPECT_GE(packet.host_time, last);
+    last = packet.host_time;
+  }
+}
+
+TEST(UdpSource, OnePortServesLidarAndImu) {
+  UdpSourceOptions options = any_port();
+  options.lidar_port = options.imu_port = free_port();
+  UdpSource source(options);
+  const UdpSender sender;
+  ASSERT_TRUE(sender.send(options.lidar_port, payload(12'608, 1)));
+  ASSERT_TRUE(sender.send(options.imu_port, payload(48, 2)));
+  EXPECT_EQ(first_byte(source), 1);
+  EXPECT_EQ(first_byte(source), 2);
+}
+
+TEST(UdpSource, TwoSensorsOnOnePortAreToldApartByAddress) {
+  // Two programs, each on an address of its own, and both sensors send to both.
+  UdpSourceOptions options = any_port();
+  options.lidar_port = free_port();
+  options.bind_address = "127.0.0.4";
+  options.source_address = "127.0.0.2";
+  UdpSource of_two(options);
+  options.bind_address = "127.0.0.5";
+  options.source_address = "127.0.0.3";
+  UdpSource of_three(options);
+  const UdpSender two("127.0.0.2");
+  const UdpSender three("127.0.0.3");
+  for (int i = 0; i < 10; ++i) {
+    for (const char* to : {"127.0.0.4", "127.0.0.5"}) {
+      ASSERT_TRUE(three.send(to, options.lidar_port, payload(100, 30 + i)));
+      ASSERT_TRUE(two.send(to, options.lidar_port, payload(100, 20 + i)));
+    }
+  }
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_EQ(first_byte(of_two), 20 + i);
+    EXPECT_EQ(first_byte(of_three), 30 + i);
+  }
+  EXPECT_EQ(first_byte(of_two), std::nullopt);
+  EXPECT_EQ(first_byte(of_three), std::nullopt);
+  EXPECT_EQ(of_two.foreign(), 10U);
+  EXPECT_EQ(of_three.foreign(), 10U);
+}
+
+TEST(UdpSource, SourceAddressCanBeLearntWhileRunning) {
+  UdpSource source(any_port());
+  auto reader = std::async(std::launch::async, [&] {
+    std::vector<int> last(2, -1);
+    RawPacket packet;
+    for (;;) {
+      const SourceStatus status = source.read(packet);
+      if (status == SourceStatus::kEnd) return last;
+      if (status == SourceStatus::kPacket) {
+        last[std::to_integer<std::size_t>(packet.bytes[0])] = std::to_integer<int>(packet.bytes[1]);
+      }
+    }
+  });
+  const UdpSender two("127.0.0.2");
+  const UdpSender three("127.0.0.3");
+  const auto send = [&](int round) {
+    std::vector<std::byte> bytes{std::byte{0}, static_cast<std::byte>(round)};
+    two.send(source.lidar_port(), bytes);
+    bytes[0] = std::byte{1};
+    three.send(source.lidar_port(), bytes);
+  };
+  send(1);
+  EXPECT_EQ(source.foreign(), 0U);
+  source.set_source_address("127.0.0.3");
+  // The call of the kernel that is under way may still take others.
+  int round = 2;
+  for (; round < 200 && source.foreign() < 10; ++round) {
+    send(round);
+    std::this_thread::sleep_for(1ms);
+  }
+  EXPECT_GE(source.foreign(), 10U);
+  source.stop();
+  const std::vector<int> last = reader.get();
+  EXPECT_LT(last[0], 5) << "the other sensor's packets came on";
+  EXPECT_GT(last[1], round - 5);
+  EXPECT_THROW(source.set_source_address("os-1"), InputError);
 }
 
 TEST(UdpSource, OtherSendersAreCountedAndDropped) {
   UdpSourceOptions options = any_port();
   options.source_address = "192.0.2.1";
-  UdpSource strict(options);
-  options.source_address = "127.0.0.1";
-  UdpSource matching(options);
-  const Sender sender;
-  RawPacket packet;
-  ASSERT_TRUE(sender.send(strict.lidar_port(), payload(48, 1)));
-  EXPECT_EQ(strict.read(packet), SourceStatus::kIdle);
-  EXPECT_EQ(strict.counters().foreign, 1U);
-  ASSERT_TRUE(sender.send(matching.lidar_port(), payload(48, 1)));
-  EXPECT_EQ(matching.read(packet), SourceStatus::kPacket);
-  EXPECT_EQ(matching.counters().foreign, 0U);
+  UdpSource source(options);
+  const UdpSender sender;
+  ASSERT_TRUE(sender.send(source.lidar_port(), payload(48, 1)));
+  EXPECT_EQ(first_byte(source), std::nullopt);
+  EXPECT_EQ(source.foreign(), 1U);
+  source.set_source_address("");
+  ASSERT_TRUE(sender.send(source.lidar_port(), payload(48, 2)));
+  EXPECT_EQ(first_byte(source), 2);
+  EXPECT_EQ(source.foreign(), 1U);
 }
 
 TEST(UdpSource, PortInUseIsNamed) {
@@ -131,10 +196,10 @@ TEST(UdpSource, PortInUseIsNamed) {
   UdpSourceOptions options = any_port();
   options.lidar_port = holder.lidar_port();
   const std::string port = std::to_string(holder.lidar_port());
-  EXPECT_THAT(
-      [&] { UdpSource second(options); },
-      ThrowsMessage<InputError>(
-          AllOf(HasSubstr("port " + port + " is held by another program"), HasSubstr("ss -ulnp"))));
+  EXPECT_THAT([&] { UdpSource second(options); },
+              ThrowsMessage<InputError>(AllOf(
+                  HasSubstr("port " + port + " is held by another program"), HasSubstr("ss -ulnp"),
+                  HasSubstr("another port"), HasSubstr("bind address"))));
   options.bind_address = "127.0.0.1";
   EXPECT_THROW(UdpSource third(options), InputError) << "also by an address of its own";
 }
@@ -147,7 +212,18 @@ TEST(UdpSource, WrongAddressesAreRefusedByName) {
   options.bind_address = "192.0.2.77";
   EXPECT_THAT([&] { UdpSource source(options); },
               ThrowsMessage<InputError>(HasSubstr("192.0.2.77 is none of this machine's")));
+  options.bind_address = "fe80::1%nosuch0";
+  EXPECT_THAT([&] { UdpSource source(options); },
+              ThrowsMessage<InputError>(HasSubstr("names an interface that is none")));
   options.bind_address = "";
+  options.multicast_group = "192.0.2.1";
+  EXPECT_THAT([&] { UdpSource source(options); },
+              ThrowsMessage<InputError>(HasSubstr("multicast group 192.0.2.1 is none")));
+  options.multicast_group = "ff05::7";
+  options.bind_address = "127.0.0.1";
+  EXPECT_THAT([&] { UdpSource source(options); },
+              ThrowsMessage<InputError>(HasSubstr("different families")));
+  options.bind_address = options.multicast_group = "";
   options.source_address = "1.2.3";
   EXPECT_THAT([&] { UdpSource source(options); },
               ThrowsMessage<InputError>(HasSubstr("source address 1.2.3")));
@@ -157,7 +233,7 @@ TEST(UdpSource, BoundToOneAddressItReceivesThere) {
   UdpSourceOptions options = any_port();
   options.bind_address = "127.0.0.1";
   UdpSource source(options);
-  ASSERT_TRUE(Sender().send(source.lidar_port(), payload(48, 3)));
+  ASSERT_TRUE(UdpSender().send(source.lidar_port(), payload(48, 3)));
   RawPacket packet;
   EXPECT_EQ(source.read(packet), SourceStatus::kPacket);
 }
@@ -181,7 +257,7 @@ TEST(UdpSource, KernelDropsAreCounted) {
   UdpSourceOptions options = any_port();
   options.rcvbuf_bytes = 1;  // the kernel grants its least
   UdpSource source(options);
-  const Sender sender;
+  const UdpSender sender;
   constexpr int kSent = 100;
   for (int i = 0; i < kSent; ++i) ASSERT_TRUE(sender.send(source.lidar_port(), payload(1000, i)));
   RawPacket packet;

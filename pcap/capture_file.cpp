@@ -7,12 +7,15 @@
 #include <cstdint>
 #include <cstring>
 #include <memory>
+#include <vector>
 
 namespace glint {
 namespace {
 
 constexpr std::size_t kHeaderBytes = 24;
 constexpr std::size_t kSnapLengthAt = 16;
+/// Some packets at a call, and small enough to lie in the cache until they are decoded.
+constexpr std::size_t kBufferBytes = std::size_t{1} << 17U;
 
 struct FileCloser {
   void operator()(std::FILE* file) const { std::fclose(file); }
@@ -25,6 +28,8 @@ struct PatchedFile {
   std::array<char, kHeaderBytes> header{};
   std::size_t header_bytes = 0;  ///< Fewer than kHeaderBytes if the file is that short.
   std::size_t header_read = 0;
+  /// The stream's, which touches it no more once it has closed the file.
+  std::vector<char> buffer = std::vector<char>(kBufferBytes);
 };
 
 /// Writes 262144, libpcap's own maximum for Ethernet, over a classic header's snap length.
@@ -64,6 +69,7 @@ std::FILE* open_capture_file(const std::filesystem::path& file) {
   auto patched = std::make_unique<PatchedFile>();
   patched->file.reset(std::fopen(file.c_str(), "rb"));
   if (patched->file == nullptr) return nullptr;
+  std::setvbuf(patched->file.get(), nullptr, _IONBF, 0);  // The stream before it has a buffer.
   patched->header_bytes = std::fread(patched->header.data(), 1, kHeaderBytes, patched->file.get());
   if (std::ferror(patched->file.get()) != 0) return nullptr;  // errno says why, e.g. a folder.
   if (patched->header_bytes == kHeaderBytes) raise_snap_length(patched->header);
@@ -71,8 +77,9 @@ std::FILE* open_capture_file(const std::filesystem::path& file) {
   std::FILE* const stream =
       fopencookie(patched.get(), "rb", {read_patched, nullptr, nullptr, close_patched});
   if (stream == nullptr) return nullptr;
+  // The buffer must be given: glibc takes no notice of the size alone.
+  std::setvbuf(stream, patched->buffer.data(), _IOFBF, kBufferBytes);
   static_cast<void>(patched.release());  // Owned by the stream from here on.
-  std::setvbuf(stream, nullptr, _IOFBF, std::size_t{1} << 16U);
   return stream;
 }
 

@@ -124,7 +124,9 @@ void append_ipv6_header(std::vector<std::uint8_t>& record, const Endpoint& sourc
 }  // namespace
 
 CaptureWriter::CaptureWriter(std::filesystem::path file, CaptureWriterOptions options)
-    : file_(std::move(file)), part_file_(file_.string() + ".part"), options_(options) {
+    : file_(std::move(file)),
+      part_file_(options.in_place ? file_.string() : file_.string() + ".part"),
+      options_(options) {
   if (options_.mtu != 0 && options_.mtu < kMinMtu) {
     throw InputError(
         fmt::format("An MTU of {} bytes is below the {} that IP asks for; use 0 for "
@@ -148,8 +150,7 @@ CaptureWriter::CaptureWriter(std::filesystem::path file, CaptureWriterOptions op
 CaptureWriter::~CaptureWriter() {
   if (stream_ == nullptr) return;
   std::fclose(stream_);
-  std::error_code ignored;
-  std::filesystem::remove(part_file_, ignored);
+  remove_part();
 }
 
 void CaptureWriter::write(HostTime host_time, const Endpoint& source, const Endpoint& destination,
@@ -210,22 +211,38 @@ void CaptureWriter::write_packet(HostTime host_time, const Endpoint& source,
   put(record_);
 }
 
+void CaptureWriter::flush() {
+  if (std::fflush(stream_) != 0) fail("be written");
+}
+
+void CaptureWriter::sync() {
+  flush();
+  if (fdatasync(fileno(stream_)) != 0) fail("be written to the disk");
+}
+
 void CaptureWriter::finish() {
   std::FILE* const stream = std::exchange(stream_, nullptr);
   if (stream == nullptr) return;
   const bool flushed = std::fflush(stream) == 0 && fsync(fileno(stream)) == 0;
   const bool closed = std::fclose(stream) == 0;
-  if (!flushed || !closed || std::rename(part_file_.c_str(), file_.c_str()) != 0) {
+  const bool named = options_.in_place || std::rename(part_file_.c_str(), file_.c_str()) == 0;
+  if (!flushed || !closed || !named) {
     const int error = errno;
-    std::error_code ignored;
-    std::filesystem::remove(part_file_, ignored);
+    remove_part();
     errno = error;
     fail("be finished");
   }
 }
 
+void CaptureWriter::remove_part() const {
+  if (options_.in_place) return;
+  std::error_code ignored;
+  std::filesystem::remove(part_file_, ignored);
+}
+
 void CaptureWriter::put(std::span<const std::uint8_t> bytes) {
   if (std::fwrite(bytes.data(), 1, bytes.size(), stream_) != bytes.size()) fail("be written");
+  bytes_ += bytes.size();
 }
 
 void CaptureWriter::fail(const char* action) const {

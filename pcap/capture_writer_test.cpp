@@ -95,6 +95,24 @@ TEST_F(CaptureWriterTest, FileHasItsNameOnlyWhenFinished) {
   EXPECT_FALSE(fs::exists(file_.string() + ".part"));
 }
 
+TEST_F(CaptureWriterTest, InPlaceWhatWasFlushedIsReadableWhateverBecomesOfTheWriter) {
+  const Buffer payload = test::pattern(12608, 1);
+  CaptureWriter writer(file_, {.in_place = true});
+  for (int i = 0; i < 3; ++i) {
+    writer.write(kTime, test::sender(), test::receiver(), as_payload(payload));
+  }
+  writer.flush();
+  EXPECT_EQ(fs::file_size(file_), writer.bytes());
+  // Another is cut short, as by the end of the process.
+  writer.write(kTime, test::sender(), test::receiver(), as_payload(payload));
+  writer.sync();
+  fs::resize_file(file_, fs::file_size(file_) - 100);
+  CaptureReader reader(file_);
+  int datagrams = 0;
+  while (reader.next() != nullptr) ++datagrams;
+  EXPECT_EQ(datagrams, 3);
+}
+
 TEST_F(CaptureWriterTest, EarlierFileStaysUntilFinished) {
   test::save(file_, {1, 2, 3});
   CaptureWriter writer(file_);

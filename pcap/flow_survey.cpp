@@ -11,30 +11,44 @@
 
 #include "driver/core/error.hpp"
 #include "driver/core/packet_view.hpp"
+#include "driver/core/profile_names.hpp"
 
 namespace glint {
 namespace {
 
 constexpr std::size_t kMaxFlows = 1024;
-/// Datagrams read after the sensor's first: some seconds, in which a second sensor shows itself.
-constexpr std::uint64_t kSurveyDatagrams = 4096;
+/// Datagrams read after the sensor's first: a second or two, in which a second sensor shows itself.
+/// They are read again afterwards, so more would be felt.
+constexpr std::uint64_t kSurveyDatagrams = 1024;
 
 using FlowKey = std::tuple<IpAddress, std::uint16_t, std::size_t, std::uint64_t>;
 
-std::uint64_t serial_of(const Datagram& datagram, const PacketFormat& format) {
-  const auto view = PacketView::parse(format, datagram.payload);
-  return view ? view->serial_number() : 0;
-}
+struct FlowTally {
+  std::uint64_t datagrams = 0;
+  PacketEvidence evidence;
+};
+using FlowTallies = std::map<FlowKey, FlowTally>;
 
-std::vector<Flow> sorted_flows(const std::map<FlowKey, std::uint64_t>& counts) {
+std::vector<Flow> sorted_flows(const FlowTallies& tallies) {
   std::vector<Flow> flows;
-  flows.reserve(counts.size());
-  for (const auto& [key, count] : counts) {
-    flows.push_back(
-        {std::get<0>(key), std::get<1>(key), std::get<2>(key), std::get<3>(key), count});
+  flows.reserve(tallies.size());
+  for (const auto& [key, tally] : tallies) {
+    flows.push_back({std::get<0>(key), std::get<1>(key), std::get<2>(key), std::get<3>(key),
+                     tally.datagrams, tally.evidence});
   }
   std::ranges::stable_sort(flows, std::ranges::greater{}, &Flow::datagrams);
   return flows;
+}
+
+/// Counts a datagram among those like it; `packet` is what it holds, if that was looked for.
+void tally(const Datagram& datagram, const std::optional<PacketView>& packet,
+           FlowTallies& tallies) {
+  const FlowKey key{datagram.source.address, datagram.destination.port, datagram.payload.size(),
+                    packet ? packet->serial_number() : 0};
+  if (tallies.size() >= kMaxFlows && !tallies.contains(key)) return;
+  FlowTally& tally = tallies[key];
+  ++tally.datagrams;
+  if (packet) tally.evidence.add(*packet);
 }
 
 /// "64 of 8448 bytes to port 7502 from 10.0.0.7, ...", the largest few.
@@ -65,6 +79,15 @@ std::string no_datagrams(const FlowSurvey& survey, const std::filesystem::path& 
       counters.malformed_records, counters.fragments);
 }
 
+/// Of which sensors the largest flow's packets would be, in brackets; empty if nobody's.
+std::string size_clause(const std::vector<Flow>& flows, int likely_beams) {
+  for (const Flow& flow : flows) {
+    const std::string profiles = profiles_of_size(flow.bytes, likely_beams);
+    if (!profiles.empty()) return fmt::format(" ({} bytes: {})", flow.bytes, profiles);
+  }
+  return {};
+}
+
 std::string source_clause(const std::optional<IpAddress>& source_ip) {
   return source_ip ? fmt::format(" from {}", to_string(*source_ip)) : std::string();
 }
@@ -82,24 +105,24 @@ std::vector<Flow> flows_of_size(const FlowSurvey& survey, const std::filesystem:
   if (!matching.empty()) return matching;
   throw InputError(fmt::format(
       "The capture {} has no lidar packet of this sensor{}: its metadata ({}, {}, {} beams) "
-      "predicts {} bytes on port {}, but the capture has {}; the metadata is likely another "
+      "predicts {} bytes on port {}, but the capture has {}{}; the metadata is likely another "
       "sensor's or of another lidar profile, so give the right one with --meta{}.",
       file.string(), source_clause(source_ip), to_string(info.profile), info.lidar_mode,
       info.pixels_per_column, format.packet_bytes, info.lidar_port, list_flows(survey.flows),
+      size_clause(survey.flows, info.pixels_per_column),
       source_ip ? " or another --source-ip" : ""));
 }
 
-void keep_serial(std::vector<Flow>& flows, std::uint64_t serial,
-                 const std::filesystem::path& file) {
-  if (serial == 0) return;
-  const std::uint64_t other = flows.front().serial;
-  std::erase_if(flows, [&](const Flow& f) { return f.serial != 0 && f.serial != serial; });
-  if (!flows.empty()) return;
-  throw MetadataError(
-      fmt::format("The lidar packets in {} come from sensor {}, but the metadata is that of sensor "
-                  "{}; give the "
-                  "metadata recorded with this capture with --meta.",
-                  file.string(), other, serial));
+/// Leaves flows of other sensors out, unless there are no others: those contradict the metadata.
+void keep_serial(std::vector<Flow>& flows, std::uint64_t serial) {
+  const auto is_other = [&](const Flow& flow) { return flow.serial != 0 && flow.serial != serial; };
+  if (serial != 0 && !std::ranges::all_of(flows, is_other)) std::erase_if(flows, is_other);
+}
+
+void check_metadata(const Flow& flow, const std::filesystem::path& file, const SensorInfo& info) {
+  const std::string contradiction = metadata_contradiction(
+      info, flow.evidence, fmt::format("The lidar packets in {}", file.string()));
+  if (!contradiction.empty()) throw MetadataError(contradiction);
 }
 
 /// IMU packets carry no serial: they are those of the lidar's source address.
@@ -123,19 +146,18 @@ void find_imu_port(const FlowSurvey& survey, const SensorInfo& info, const Packe
 FlowSurvey survey_flows(const std::filesystem::path& file, const PacketFormat* format) {
   CaptureReader reader(file);
   FlowSurvey survey;
-  std::map<FlowKey, std::uint64_t> counts;
+  FlowTallies tallies;
   std::uint64_t since_first_packet = 0;
   while (const Datagram* datagram = reader.next()) {
     const bool expected = format != nullptr && datagram->payload.size() == format->packet_bytes;
-    const FlowKey key{datagram->source.address, datagram->destination.port,
-                      datagram->payload.size(), expected ? serial_of(*datagram, *format) : 0};
-    if (counts.size() < kMaxFlows || counts.contains(key)) ++counts[key];
+    tally(*datagram, expected ? PacketView::parse(*format, datagram->payload) : std::nullopt,
+          tallies);
     if (survey.datagrams++ == 0) survey.first_time = datagram->host_time;
     survey.last_time = datagram->host_time;
     if (expected || since_first_packet > 0) ++since_first_packet;
     if (since_first_packet > kSurveyDatagrams) break;
   }
-  survey.flows = sorted_flows(counts);
+  survey.flows = sorted_flows(tallies);
   survey.counters = reader.counters();
   survey.link_type = reader.link_type();
   survey.problem = reader.problem();
@@ -157,11 +179,12 @@ SensorFlow find_sensor_flow(const FlowSurvey& survey, const std::filesystem::pat
   std::vector<Flow> flows = flows_of_size(survey, file, info, format, source_ip);
   SensorFlow found;
   found.serial = expected_serial(info, format);
-  keep_serial(flows, found.serial, file);
+  keep_serial(flows, found.serial);
 
   std::vector<Flow> on_port = flows;
   std::erase_if(on_port, [&](const Flow& f) { return f.port != info.lidar_port; });
   const Flow& best = on_port.empty() ? flows.front() : on_port.front();
+  check_metadata(best, file, info);
   found.source = best.source;
   found.lidar_port = best.port;
   if (on_port.empty()) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "driver/core/metadata_check.hpp"
 #include "driver/core/packet_format.hpp"
 #include "driver/core/sensor_info.hpp"
 #include "pcap/capture_reader.hpp"
@@ -22,6 +23,7 @@ struct Flow {
   std::size_t bytes = 0;     ///< Payload of each.
   std::uint64_t serial = 0;  ///< The sensor's, by the packet header; 0 where it cannot be told.
   std::uint64_t datagrams = 0;
+  PacketEvidence evidence;  ///< Of packets of the size that was looked for.
 };
 
 /// What UDP there is in a capture.
@@ -50,7 +52,8 @@ struct SensorFlow {
 
 /// Finds the sensor's flow: packets of its size (and serial number where they carry one), on the
 /// port that metadata names if there are any, else wherever they are, which a notice then says.
-/// @throws InputError if there is none; the sentence says what was seen instead.
+/// @throws InputError if there is none, the sentence says what was seen instead; MetadataError if
+/// the packets contradict the metadata.
 SensorFlow find_sensor_flow(const FlowSurvey& survey, const std::filesystem::path& file,
                             const SensorInfo& info, const PacketFormat& format,
                             const std::optional<IpAddress>& source_ip);

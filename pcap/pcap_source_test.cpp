@@ -169,7 +169,8 @@ TEST_F(PcapSourceTest, MetadataOfAnotherSensorIsRefusedBySize) {
   const std::string sentence = complaint(make_sensor(LidarProfile::kLegacy, "", 64));
   EXPECT_THAT(sentence,
               AllOf(HasSubstr("12608 bytes"), HasSubstr("port 7502"), HasSubstr("32 of 3392 bytes"),
-                    HasSubstr("another sensor"), HasSubstr("--meta")));
+                    HasSubstr("(3392 bytes: LEGACY with 16 beams)"), HasSubstr("another sensor"),
+                    HasSubstr("--meta")));
 }
 
 TEST_F(PcapSourceTest, MetadataOfAnotherSensorIsRefusedBySerial) {
@@ -177,6 +178,20 @@ TEST_F(PcapSourceTest, MetadataOfAnotherSensorIsRefusedBySerial) {
   const std::string sentence =
       complaint(make_sensor(LidarProfile::kRng19Rfl8Sig16Nir16, "992137000142"));
   EXPECT_THAT(sentence, AllOf(HasSubstr("122201000998"), HasSubstr("992137000142")));
+}
+
+TEST_F(PcapSourceTest, MetadataOfAnotherStartOrModeIsRefused) {
+  const SensorInfo info = make_sensor(LidarProfile::kRng19Rfl8Sig16Nir16, "122201000998");
+  write_scan(info, kSensorA);
+  SensorInfo metadata = info;
+  metadata.init_id = 99;
+  EXPECT_THAT(complaint(metadata), AllOf(HasSubstr("capture.pcap carry initialization id 7109750"),
+                                         HasSubstr("the metadata has 99")));
+  metadata = info;
+  metadata.columns_per_frame = 256;
+  metadata.column_window = {0, 255};
+  EXPECT_THAT(complaint(metadata),
+              AllOf(HasSubstr("columns up to 511"), HasSubstr("256 columns a scan")));
 }
 
 TEST_F(PcapSourceTest, UnknownSourceAddressIsRefused) {

@@ -23,15 +23,17 @@ double voxel_from_median_range_m(const Keyframe& keyframe) {
 
 }  // namespace
 
-Backend::Backend(const SensorInfo& info, const SlamConfig& config,
-                 const std::filesystem::path& session_file, Clock clock)
+Backend::Backend(const SlamConfig& config, const std::filesystem::path& session_file, Clock clock)
     : config_(config),
       clock_(clock),
-      store_(session_file.empty() ? nullptr
-                                  : std::make_unique<SessionStore>(session_file, info, config)),
+      store_(session_file.empty() ? nullptr : std::make_unique<SessionStore>(session_file, config)),
       snapshot_(std::make_shared<const MapSnapshot>()) {}
 
 Backend::~Backend() = default;
+
+void Backend::use_sensor(const SensorInfo& info) {
+  if (store_ && !store_->set_sensor(info)) ++store_failures_;
+}
 
 void Backend::process(const Keyframe& keyframe) {
   const std::int64_t wall_start_ns = clock_.monotonic_ns();

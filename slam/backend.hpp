@@ -28,12 +28,14 @@ class Backend {
  public:
   /// `session_file`: where the session is kept; empty for none. @throws InputError if it cannot be
   /// created.
-  Backend(const SensorInfo& info, const SlamConfig& config,
-          const std::filesystem::path& session_file = {}, Clock clock = {});
+  explicit Backend(const SlamConfig& config, const std::filesystem::path& session_file = {},
+                   Clock clock = {});
   ~Backend();
   Backend(const Backend&) = delete;
   Backend& operator=(const Backend&) = delete;
 
+  /// Whose scans the keyframes that follow are of.
+  void use_sensor(const SensorInfo& info);
   void process(const Keyframe& keyframe);
   [[nodiscard]] const MapCorrection& correction() const { return correction_; }
   /// The map now; immutable, to be handed to clients.
@@ -41,7 +43,7 @@ class Backend {
   /// Wall and CPU time of the last process() call, ns.
   [[nodiscard]] std::int64_t last_wall_ns() const { return last_wall_ns_; }
   [[nodiscard]] std::int64_t last_cpu_ns() const { return last_cpu_ns_; }
-  /// Keyframes the session file could not take, and why the last one could not.
+  /// Keyframes and sensors the session file could not take, and why the last one could not.
   [[nodiscard]] std::uint64_t store_failures() const { return store_failures_; }
   [[nodiscard]] std::string_view store_error() const;
 

@@ -48,6 +48,8 @@ Eigen::Matrix<double, 6, 6> compose_covariance(const Eigen::Matrix<double, 6, 6>
 struct ReferenceScan {
   Features features;
   SensorTime time;  // The reference time of its points.
+  std::uint64_t sequence = 0;
+  std::uint64_t restarts = 0;  // Of the sensor, until then.
   Pose T_odom_scan;
   bool valid = false;
 };
@@ -55,10 +57,12 @@ struct ReferenceScan {
 }  // namespace
 
 struct Frontend::Impl {
-  Impl(const SensorInfo& sensor_info, const SlamConfig& slam_config, Clock given_clock)
+  Impl(const SensorInfo& sensor_info, const SlamConfig& slam_config, Clock given_clock,
+       const Eigen::Quaterniond& R_base_sensor)
       : info(sensor_info),
         config(slam_config),
         clock(given_clock),
+        mount{R_base_sensor, Eigen::Vector3d::Zero()},
         lut(std::make_shared<const XyzLut>(info)),
         former(info, config),
         extractor(info, config, lut),
@@ -79,10 +83,12 @@ struct Frontend::Impl {
   void make_keyframe(const LidarScan& scan);
   void become_reference(ReferenceScan& slot, const Pose& T_odom_scan);
   double seconds_since(const ReferenceScan& from) const;
+  ConstantVelocity motion_about(SensorTime reference_time, const Twist& velocity) const;
 
   const SensorInfo info;
   const SlamConfig config;
   const Clock clock;
+  const Pose mount;  // T_odom_sensor where a trajectory begins: odometry is upright as the base is.
   const std::shared_ptr<const XyzLut> lut;
   ImageFormer former;
   FeatureExtractor extractor;
@@ -95,8 +101,10 @@ struct Frontend::Impl {
   SensorTime current_time;
   ReferenceScan reference;  // The last good scan.
   ReferenceScan candidate;  // The last scan, while `reference` is not found again.
+  std::uint64_t restarts = 0;
   int candidate_successes = 0;
-  int failures = 0;  // Scans since the last good one.
+  int failures = 0;            // Scans since the last good one.
+  Pose T_odom_origin = mount;  // Of the first scan of a trajectory.
   std::vector<PointPair> pairs;
 
   OdometryEstimate estimate;
@@ -105,8 +113,9 @@ struct Frontend::Impl {
   StageTimes times;
 };
 
-Frontend::Frontend(const SensorInfo& info, const SlamConfig& config, Clock clock)
-    : impl_(std::make_unique<Impl>(info, config, clock)) {}
+Frontend::Frontend(const SensorInfo& info, const SlamConfig& config, Clock clock,
+                   const Eigen::Quaterniond& R_base_sensor)
+    : impl_(std::make_unique<Impl>(info, config, clock, R_base_sensor)) {}
 
 Frontend::~Frontend() = default;
 
@@ -125,10 +134,19 @@ void Frontend::reset() {
   my.reference.valid = false;
   my.candidate.valid = false;
   my.failures = 0;
+  my.T_odom_origin = my.mount;
   my.selector.reset();
   const std::uint32_t segment = my.estimate.segment + 1;
   my.estimate = {};
   my.estimate.segment = segment;
+}
+
+void Frontend::change_sensor(const SensorInfo& info) {
+  auto fresh = std::make_unique<Impl>(info, impl_->config, impl_->clock, impl_->mount.rotation);
+  fresh->next_keyframe_id = impl_->next_keyframe_id;
+  fresh->estimate.segment = impl_->estimate.segment + 1;
+  fresh->T_odom_origin = impl_->estimate.T_odom_sensor;
+  impl_ = std::move(fresh);
 }
 
 const StageTimes& Frontend::stage_times() const { return impl_->times; }
@@ -139,13 +157,14 @@ void Frontend::Impl::run(const LidarScan& scan) {
   estimate.sequence = scan.sequence;
   estimate.frame_id = scan.frame_id;
   estimate.stamp = scan.end_time;
+  if (scan.sensor_restarted) ++restarts;
   estimate.completeness = scan.completeness();
   estimate.matches = 0;
   estimate.inliers = 0;
   const bool usable = observe(scan);
   if (!reference.valid) {
     if (usable) initialize();
-    publish(scan, {});
+    publish(scan, T_odom_origin);
     if (usable) make_keyframe(scan);
     return;
   }
@@ -176,7 +195,7 @@ bool Frontend::Impl::observe(const LidarScan& scan) {
 
 void Frontend::Impl::initialize() {
   estimate.state = TrackingState::kInit;
-  become_reference(reference, {});
+  become_reference(reference, T_odom_origin);
 }
 
 // Registers the current scan with an older one; [Du & Beltrame 2023, eqs. 2-3].
@@ -197,7 +216,8 @@ Registration Frontend::Impl::track(const ReferenceScan& from, const Twist& predi
   // first.
   for (int pass = 0; pass < (config.deskew ? 2 : 1); ++pass) {
     if (config.deskew) {
-      deskew(current.raw_points_m, current.times, {velocity, current_time}, current.points_m);
+      deskew(current.raw_points_m, current.times, motion_about(current_time, velocity),
+             current.points_m);
     }
     pairs.clear();
     for (const Match& match : *matches) {
@@ -215,7 +235,7 @@ Registration Frontend::Impl::track(const ReferenceScan& from, const Twist& predi
 
 bool Frontend::Impl::plausible(const Registration& motion, double dt_s) const {
   if (!motion.ok) return false;
-  // After a jump of the sensor's clock the step is judged as one between neighbouring scans.
+  // Where a restarted sensor's clock went back, the step is judged as one of neighbouring scans.
   const double span_s =
       dt_s > 0 ? dt_s : static_cast<double>(info.scan_period_ns()) * kSecondsPerNs;
   const Twist step = se3_log(motion.T_reference_current);
@@ -248,7 +268,7 @@ void Frontend::Impl::coast(const LidarScan& scan) {
   if (estimate.state == TrackingState::kInit) {
     // Nothing has been tracked yet: begin anew with this scan if it is of use.
     if (current.size() >= kFewestKeypoints) initialize();
-    publish(scan, {});
+    publish(scan, T_odom_origin);
     return;
   }
   if (failures > config.max_coasted_scans) {
@@ -287,14 +307,14 @@ void Frontend::Impl::search_restart(const LidarScan& scan) {
 }
 
 void Frontend::Impl::publish(const LidarScan& scan, const Pose& T_odom_scan) {
-  const double ahead_s = static_cast<double>(scan.end_time - current_time) * kSecondsPerNs;
-  estimate.T_odom_sensor = T_odom_scan * se3_exp(estimate.velocity * ahead_s);
+  const ConstantVelocity motion = motion_about(current_time, estimate.velocity);
+  estimate.T_odom_sensor = T_odom_scan * motion.at(scan.end_time);
 }
 
 void Frontend::Impl::make_keyframe(const LidarScan& scan) {
   if (!selector.select(estimate)) return;
   const auto columns = static_cast<int>(scan.column_time.size());
-  const ConstantVelocity motion(estimate.velocity, scan.end_time);
+  const ConstantVelocity motion = motion_about(scan.end_time, estimate.velocity);
   // A rigid scan moves as a whole from its middle to its end.
   const Pose T_end_middle = motion.at(current_time);
   keyframe.emplace();
@@ -317,18 +337,34 @@ void Frontend::Impl::make_keyframe(const LidarScan& scan) {
 
 void Frontend::Impl::become_reference(ReferenceScan& slot, const Pose& T_odom_scan) {
   if (config.deskew) {
-    deskew(current.raw_points_m, current.times, {estimate.velocity, current_time},
+    deskew(current.raw_points_m, current.times, motion_about(current_time, estimate.velocity),
            current.points_m);
   }
   // The slot's buffers are used for the next scan.
   std::swap(slot.features, current);
   slot.time = current_time;
+  slot.sequence = estimate.sequence;
+  slot.restarts = restarts;
   slot.T_odom_scan = T_odom_scan;
   slot.valid = true;
 }
 
+// By the stamps, as long as the number of scans in between bears them out. Otherwise the sensor's
+// clock jumped, and the number of scans tells; across a restart they are not numbered through.
 double Frontend::Impl::seconds_since(const ReferenceScan& from) const {
-  return static_cast<double>(current_time - from.time) * kSecondsPerNs;
+  const double stamped_s = static_cast<double>(current_time - from.time) * kSecondsPerNs;
+  if (estimate.sequence <= from.sequence || from.restarts != restarts) return stamped_s;
+  const double counted_s = static_cast<double>(estimate.sequence - from.sequence) *
+                           static_cast<double>(info.scan_period_ns()) * kSecondsPerNs;
+  // The rate in the metadata may be off by a factor of two.
+  const bool borne_out = stamped_s > 0.4 * counted_s && stamped_s < 2.5 * counted_s;
+  return borne_out ? stamped_s : counted_s;
+}
+
+ConstantVelocity Frontend::Impl::motion_about(SensorTime reference_time,
+                                              const Twist& velocity) const {
+  // No column is further away than a scan, on a motor that is slower than it should be.
+  return {velocity, reference_time, info.scan_period_ns() + info.scan_period_ns() / 4};
 }
 
 }  // namespace glint::slam

@@ -7,6 +7,7 @@
 
 #include "driver/core/clock.hpp"
 #include "driver/core/lidar_scan.hpp"
+#include "driver/core/pose.hpp"
 #include "driver/core/sensor_info.hpp"
 #include "slam/config.hpp"
 #include "slam/keyframe.hpp"
@@ -21,7 +22,10 @@ namespace glint::slam {
 /// odometry thread.
 class Frontend {
  public:
-  Frontend(const SensorInfo& info, const SlamConfig& config, Clock clock = {});
+  /// `R_base_sensor`: how the sensor is mounted. The odometry frame is parallel to the base at the
+  /// first scan, so that its z is up however the sensor hangs; its origin is there in the sensor.
+  Frontend(const SensorInfo& info, const SlamConfig& config, Clock clock = {},
+           const Eigen::Quaterniond& R_base_sensor = Eigen::Quaterniond::Identity());
   ~Frontend();
   Frontend(const Frontend&) = delete;
   Frontend& operator=(const Frontend&) = delete;
@@ -32,6 +36,9 @@ class Frontend {
   std::optional<Keyframe> take_keyframe();
   /// Forgets the trajectory: the next scan is the origin of a new odometry frame (segment + 1).
   void reset();
+  /// What follows are scans of another sensor, or of this one in another mode: they go on from the
+  /// last pose, without a link (segment + 1). Forgets what it saw, not the numbers of keyframes.
+  void change_sensor(const SensorInfo& info);
 
   /// What the last scan's stages took (kImage ... kRegistration, kTotal).
   [[nodiscard]] const StageTimes& stage_times() const;

@@ -192,5 +192,64 @@ TEST_F(FrontendTest, ResetBeginsANewOrigin) {
   EXPECT_EQ(frontend_.process((*scans_)[31]).state, TrackingState::kTracking);
 }
 
+TEST_F(FrontendTest, AnotherSensorGoesOnFromTheLastPoseInANewSegment) {
+  std::uint64_t keyframes = 0;
+  for (std::size_t i = 0; i < 30; ++i) {
+    frontend_.process((*scans_)[i]);
+    if (frontend_.take_keyframe()) ++keyframes;
+  }
+  const Pose last = frontend_.process((*scans_)[30]).T_odom_sensor;
+  ASSERT_FALSE(frontend_.take_keyframe()) << "the test counts on none here";
+  frontend_.change_sensor(simulator_->info());
+  const OdometryEstimate& estimate = frontend_.process((*scans_)[31]);
+  EXPECT_EQ(estimate.state, TrackingState::kInit);
+  EXPECT_EQ(estimate.segment, 1U);
+  EXPECT_EQ(estimate.T_odom_sensor.translation_m, last.translation_m);
+  EXPECT_EQ(frontend_.take_keyframe().value().id, keyframes);
+  EXPECT_EQ(frontend_.process((*scans_)[32]).state, TrackingState::kTracking);
+}
+
+// A jump of the sensor's clock by so many ns, from a column of the 15th scan on.
+struct ClockStep {
+  std::int64_t by_ns;
+  int column;
+};
+
+class FrontendClockJump : public FrontendTest, public testing::WithParamInterface<ClockStep> {
+ protected:
+  static LidarScan stepped(LidarScan scan, std::size_t index) {
+    const auto [by_ns, column] = GetParam();
+    if (index < kJumpScan) return scan;
+    for (int m = index == kJumpScan ? column : 0; m < kColumns; ++m) {
+      scan.column_time[static_cast<std::size_t>(m)].ns += by_ns;
+    }
+    scan.end_time = scan.column_time.back();
+    scan.mid_time = scan.column_time[kColumns / 2];
+    return scan;
+  }
+  static constexpr std::size_t kJumpScan = 15;
+};
+
+TEST_P(FrontendClockJump, IsHarmless) {
+  Frontend undisturbed(simulator_->info(), {});
+  for (std::size_t i = 0; i < 30; ++i) {
+    const LidarScan& scan = (*scans_)[i];
+    const OdometryEstimate expected = undisturbed.process(scan);
+    const OdometryEstimate& estimate = frontend_.process(stepped(scan, i));
+    EXPECT_EQ(estimate.state, i == 0 ? TrackingState::kInit : TrackingState::kTracking) << i;
+    const Pose difference = expected.T_odom_sensor.inverse() * estimate.T_odom_sensor;
+    EXPECT_LT(difference.translation_m.norm(), i < kJumpScan ? 1e-12 : 0.03) << i;
+    EXPECT_LT(so3_log(difference.rotation).norm(), 0.01) << i;
+    EXPECT_LT((estimate.velocity - expected.velocity).norm(), 0.3) << i;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Steps, FrontendClockJump,
+                         testing::Values(ClockStep{3'000'000'000, 0}, ClockStep{-3'000'000'000, 0},
+                                         ClockStep{3'600'000'000'000, 0},
+                                         ClockStep{-200'000'000, 0}, ClockStep{400'000'000, 0},
+                                         ClockStep{3'000'000'000, kColumns / 2},
+                                         ClockStep{-3'000'000'000, kColumns / 2}));
+
 }  // namespace
 }  // namespace glint::slam

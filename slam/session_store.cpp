@@ -149,15 +149,14 @@ bool SessionStore::Impl::insert_odometry_edge(const Keyframe& keyframe) {
 }
 
 bool SessionStore::Impl::put_meta(const char* key, std::string_view value) {
-  const Statement s = prepare("INSERT INTO meta VALUES (?, ?)");
+  const Statement s = prepare("INSERT OR REPLACE INTO meta VALUES (?, ?)");
   if (!s) return false;
   sqlite3_bind_text(s.get(), 1, key, -1, SQLITE_STATIC);
   sqlite3_bind_text(s.get(), 2, value.data(), static_cast<int>(value.size()), SQLITE_STATIC);
   return step(s);
 }
 
-SessionStore::SessionStore(const std::filesystem::path& file, const SensorInfo& info,
-                           const SlamConfig& config)
+SessionStore::SessionStore(const std::filesystem::path& file, const SlamConfig& config)
     : impl_(std::make_unique<Impl>()) {
   std::error_code ignored;
   for (const char* suffix : {"", "-wal", "-shm"}) {
@@ -169,7 +168,7 @@ SessionStore::SessionStore(const std::filesystem::path& file, const SensorInfo& 
   const bool ready =
       opened && my.run("PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL;") && my.run("BEGIN") &&
       my.run(kSchema) && my.put_meta("schema_version", "1") &&
-      my.put_meta("preset", config.preset) && my.put_meta("sensor", to_metadata_json(info)) &&
+      my.put_meta("preset", config.preset) &&
       my.put_meta("pose_format", "x y z (m) qx qy qz qw, little-endian float64") &&
       my.put_meta("points_format", "int16 x y z (cm), uint8 intensity, sensor frame at t_ns") &&
       my.run("COMMIT");
@@ -188,6 +187,10 @@ SessionStore::SessionStore(const std::filesystem::path& file, const SensorInfo& 
 }
 
 SessionStore::~SessionStore() = default;
+
+bool SessionStore::set_sensor(const SensorInfo& info) {
+  return impl_->put_meta("sensor", to_metadata_json(info));
+}
 
 bool SessionStore::add(const Keyframe& keyframe, const Pose& T_map_sensor) {
   Impl& my = *impl_;

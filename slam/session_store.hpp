@@ -20,11 +20,13 @@ class SessionStore {
  public:
   /// Creates the file, replacing one that is there. @throws InputError naming the file if it
   /// cannot.
-  SessionStore(const std::filesystem::path& file, const SensorInfo& info, const SlamConfig& config);
+  SessionStore(const std::filesystem::path& file, const SlamConfig& config);
   ~SessionStore();
   SessionStore(const SessionStore&) = delete;
   SessionStore& operator=(const SessionStore&) = delete;
 
+  /// Commits whose scans the keyframes are of, in place of an earlier sensor. False as of add().
+  [[nodiscard]] bool set_sensor(const SensorInfo& info);
   /// Commits a keyframe and the odometry edge to the one before it of the same segment. False when
   /// the file could not be written (disk full); error() then says why, and the next call tries
   /// anew.

@@ -61,7 +61,7 @@ class SessionStoreTest : public testing::Test {
 };
 
 TEST_F(SessionStoreTest, KeyframesAreThereForOthersWhileItIsOpen) {
-  SessionStore store(file_, info_, {});
+  SessionStore store(file_, {});
   ASSERT_TRUE(store.add(keyframe(0), {}));
   ASSERT_TRUE(store.add(keyframe(1), {}));
   EXPECT_EQ(query("SELECT count(*) FROM keyframes"), "2");
@@ -74,7 +74,7 @@ TEST_F(SessionStoreTest, KeyframesAreThereForOthersWhileItIsOpen) {
 }
 
 TEST_F(SessionStoreTest, PointsAreKeptToTheCentimetre) {
-  SessionStore store(file_, info_, {});
+  SessionStore store(file_, {});
   ASSERT_TRUE(store.add(keyframe(0), {}));
   const std::string points = query("SELECT points FROM keyframes");
   ASSERT_EQ(points.size(), 7U);  // the point 1 km away does not fit and is left out
@@ -85,7 +85,7 @@ TEST_F(SessionStoreTest, PointsAreKeptToTheCentimetre) {
 }
 
 TEST_F(SessionStoreTest, NoEdgeJoinsSegments) {
-  SessionStore store(file_, info_, {});
+  SessionStore store(file_, {});
   ASSERT_TRUE(store.add(keyframe(0), {}));
   Keyframe after_a_jump = keyframe(1);
   after_a_jump.estimate.segment = 1;
@@ -94,14 +94,23 @@ TEST_F(SessionStoreTest, NoEdgeJoinsSegments) {
 }
 
 TEST_F(SessionStoreTest, EventsAndMetaAreKept) {
-  SessionStore store(file_, info_, {});
+  SessionStore store(file_, {});
   ASSERT_TRUE(store.add_event({5}, "tracking", R"({"state":"LOST"})"));
   EXPECT_EQ(query("SELECT data FROM events WHERE t_ns=5"), R"({"state":"LOST"})");
   EXPECT_EQ(query("SELECT value FROM meta WHERE key='schema_version'"), "1");
 }
 
+TEST_F(SessionStoreTest, TheSensorIsTheOneSetLast) {
+  SessionStore store(file_, {});
+  ASSERT_TRUE(store.set_sensor(info_));
+  info_.lidar_mode = "2048x10";
+  ASSERT_TRUE(store.set_sensor(info_));
+  const std::string sensor = query("SELECT value FROM meta WHERE key='sensor'");
+  EXPECT_EQ(parse_sensor_info(sensor, "session").lidar_mode, "2048x10");
+}
+
 TEST_F(SessionStoreTest, AKeyframeThatCannotBeAddedLeavesTheFileWhole) {
-  SessionStore store(file_, info_, {});
+  SessionStore store(file_, {});
   ASSERT_TRUE(store.add(keyframe(0), {}));
   EXPECT_FALSE(store.add(keyframe(0), {}));  // the id is taken
   EXPECT_NE(store.error(), "");
@@ -111,7 +120,7 @@ TEST_F(SessionStoreTest, AKeyframeThatCannotBeAddedLeavesTheFileWhole) {
 
 TEST_F(SessionStoreTest, ADirectoryThatIsNotThereIsNamed) {
   try {
-    const SessionStore store(directory_ / "none" / "s.glint", info_, {});
+    const SessionStore store(directory_ / "none" / "s.glint", {});
     FAIL() << "was created";
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("none/s.glint"), std::string::npos) << error.what();

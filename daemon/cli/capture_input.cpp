@@ -4,7 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <fstream>
 #include <iostream>
+#include <iterator>
 
 #include "daemon/cli/command.hpp"
 #include "driver/core/error.hpp"
@@ -72,6 +74,19 @@ bool has_capture_info(const CaptureInput& input) {
   return find_metadata_file(input) || metadata_inside(input);
 }
 
+namespace {
+
+[[noreturn]] void fail_without_metadata(const CaptureInput& input) {
+  fs::path beside = input.capture;
+  beside.replace_extension(".json");
+  throw InputError(
+      fmt::format("There is no metadata for {}: neither {} nor metadata.json beside it; name the "
+                  "sensor's metadata file with --meta.",
+                  input.capture, beside.string()));
+}
+
+}  // namespace
+
 SensorInfo load_capture_info(const CaptureInput& input) {
   SensorInfo info;
   if (const auto file = find_metadata_file(input)) {
@@ -79,15 +94,20 @@ SensorInfo load_capture_info(const CaptureInput& input) {
   } else if (const auto json = metadata_inside(input)) {
     info = parse_sensor_info(*json, input.capture);
   } else {
-    fs::path beside = input.capture;
-    beside.replace_extension(".json");
-    throw InputError(
-        fmt::format("There is no metadata for {}: neither {} nor metadata.json beside it; name the "
-                    "sensor's metadata file with --meta.",
-                    input.capture, beside.string()));
+    fail_without_metadata(input);
   }
   print_notices(info.warnings);
   return info;
+}
+
+std::string load_capture_metadata(const CaptureInput& input) {
+  if (const auto file = find_metadata_file(input)) {
+    static_cast<void>(load_sensor_info(*file));  // Tells what is wrong with it.
+    std::ifstream in(*file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  if (auto json = metadata_inside(input)) return *std::move(json);
+  fail_without_metadata(input);
 }
 
 std::unique_ptr<PacketSource> open_capture(const CaptureInput& input, const SensorInfo& info,

@@ -32,6 +32,9 @@ bool has_capture_info(const CaptureInput& input);
 /// Reads the metadata. @throws InputError, also when there is none, saying where it was looked for.
 SensorInfo load_capture_info(const CaptureInput& input);
 
+/// The text that load_capture_info() reads. @throws InputError, also when there is none.
+std::string load_capture_metadata(const CaptureInput& input);
+
 /// Opens the capture or recording, whichever it is by its content.
 /// @throws InputError, UsageError if --source-ip is no address.
 std::unique_ptr<PacketSource> open_capture(const CaptureInput& input, const SensorInfo& info,

@@ -10,13 +10,19 @@ using Json = nlohmann::ordered_json;
 
 Json to_json(const AssemblerCounters& c) {
   return {{"packets", c.packets},
+          {"imu_packets", c.imu_packets},
+          {"zone_packets", c.zone_packets},
           {"bad_size", c.bad_size},
           {"bad_type", c.bad_type},
           {"bad_serial", c.bad_serial},
+          {"corrupt_packets", c.corrupt_packets},
+          {"crc_mismatches", c.crc_mismatches},
           {"bad_columns", c.bad_column},
           {"late_packets", c.late_packets},
           {"duplicate_packets", c.duplicate_packets},
+          {"stray_packets", c.stray_packets},
           {"missing_packets", c.missing_packets},
+          {"clock_jumps", c.clock_jumps},
           {"restarts", c.restarts},
           {"scans", c.scans},
           {"incomplete_scans", c.incomplete_scans}};

@@ -30,6 +30,8 @@ void add_dump(CLI::App& app);
 void add_info(CLI::App& app);
 void add_simulate(CLI::App& app);
 void add_emulate(CLI::App& app);
+void add_record(CLI::App& app);
+void add_doctor(CLI::App& app);
 void add_status(CLI::App& app);
 void add_pose(CLI::App& app);
 void add_watch(CLI::App& app);

@@ -93,17 +93,10 @@ class FrameWriter {
   }
 
   void write_xyz(const Image<std::uint32_t>& range_mm, const std::string& name) {
-    xyz_m_.clear();
-    for (int row = 0; row < range_mm.rows; ++row) {
-      const int shift = info_.pixel_shift_by_row[size(row)];
-      for (int col = 0; col < range_mm.cols; ++col) {
-        const int column = staggered_column(col, shift, range_mm.cols);
-        const Eigen::Vector3d point = lut_.point(row, column, range_mm(row, column));
-        xyz_m_.insert(xyz_m_.end(), {point.x(), point.y(), point.z()});
-      }
-    }
+    xyz_m_.resize(range_mm.data.size());
+    lut_.destaggered_points(range_mm, info_.pixel_shift_by_row, xyz_m_);
     write_npy<double>(folder_ / (name + ".npy"), {size(range_mm.rows), size(range_mm.cols), 3},
-                      xyz_m_);
+                      {xyz_m_.data()->data(), 3 * xyz_m_.size()});
   }
 
   void write_columns(const LidarScan& scan, const std::string& prefix) {
@@ -121,7 +114,7 @@ class FrameWriter {
   const SensorInfo& info_;
   const XyzLut lut_;
   const fs::path folder_;
-  std::vector<double> xyz_m_;
+  std::vector<Eigen::Vector3d> xyz_m_;
   std::vector<std::uint64_t> times_ns_;
 };
 

@@ -26,6 +26,8 @@ int run(int argc, char** argv) {
   add_info(app);
   add_simulate(app);
   add_emulate(app);
+  add_record(app);
+  add_doctor(app);
   add_status(app);
   add_pose(app);
   add_watch(app);

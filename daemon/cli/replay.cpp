@@ -19,6 +19,7 @@
 #include "daemon/cli/text_file.hpp"
 #include "daemon/cli/trajectory_error.hpp"
 #include "daemon/cli/trajectory_writer.hpp"
+#include "daemon/clock_settings.hpp"
 #include "daemon/config.hpp"
 #include "daemon/replay_pacer.hpp"
 #include "daemon/version.hpp"
@@ -134,11 +135,12 @@ nlohmann::ordered_json summary_of(const ReplayResult& result, const SensorInfo& 
       {"interrupted", result.interrupted},
       {"peak_rss_mb", peak_rss_mb()}};
   summary["packets"] = {{"accepted", packets.packets},
-                        {"imu", result.imu_packets},
+                        {"imu", packets.imu_packets},
                         {"missing", packets.missing_packets},
                         {"late", packets.late_packets},
                         {"duplicate", packets.duplicate_packets},
                         {"bad", packets.bad_size + packets.bad_type + packets.bad_serial},
+                        {"corrupt", packets.corrupt_packets},
                         {"bad_columns", packets.bad_column},
                         {"sensor_restarts", packets.restarts}};
   summary["tracking"] = {{"keypoints_mean", totals.keypoints_mean},
@@ -170,6 +172,10 @@ void write_trajectories(const std::filesystem::path& out, const Trajectories& tr
   write_tum(out / "odometry.tum", trajectories.odometry);
   write_tum(out / "trajectory.tum", trajectories.optimised);
   write_kitti(out / "trajectory.kitti", out / "times.txt", trajectories.optimised);
+  if (const std::size_t lacking = count_not_rising(trajectories.odometry); lacking > 0) {
+    std::cerr << "glint: the sensor's clock went back, so " << lacking
+              << " poses have no line in the trajectories, whose times must rise\n";
+  }
 }
 
 // Adds the error against --truth to the summary; returns the line that says it.
@@ -204,7 +210,8 @@ void end_progress(const ReplayResult& result, const ReplayCommand& command) {
 
 void run(const ReplayCommand& command) {
   const daemon::Config config = effective_config(command);
-  const SensorInfo info = load_capture_info(command.input);
+  const SensorInfo info =
+      daemon::with_clock_settings(load_capture_info(command.input), config.sensor);
   const auto source = open_capture(command.input, info, pacer_for(command.rate));
   std::error_code error;
   std::filesystem::create_directories(command.out, error);
@@ -214,6 +221,7 @@ void run(const ReplayCommand& command) {
   }
   ReplayOptions options;
   options.slam = config.slam;
+  options.R_base_sensor = config.mount.T_base_sensor.rotation;
   options.session_file = command.out / "session.glint";
   options.max_scans = command.frames;
   options.on_scan = [](std::uint64_t scans) {

@@ -19,8 +19,10 @@ class Replay {
       : options_(options),
         clock_(daemon::stage_clock()),
         assembler_(info),
-        frontend_(info, options.slam, clock_),
-        backend_(info, options.slam, options.session_file, clock_) {}
+        frontend_(info, options.slam, clock_, options.R_base_sensor),
+        backend_(options.slam, options.session_file, clock_) {
+    backend_.use_sensor(info);
+  }
 
   ReplayResult run(PacketSource& source) {
     const std::int64_t start_ns = clock_.monotonic_ns();
@@ -49,11 +51,7 @@ class Replay {
  private:
   void decode(const RawPacket& packet) {
     const slam::StageTimer timer(clock_, decode_times_, slam::Stage::kDecode);
-    if (packet.bytes.size() == assembler_.format().imu_packet_bytes) {
-      ++result_.imu_packets;
-      return;
-    }
-    // Strangers are counted by the assembler and the source.
+    // Whatever it is, the assembler counts it.
     static_cast<void>(assembler_.push(packet.bytes));
   }
 

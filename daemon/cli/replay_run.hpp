@@ -28,7 +28,6 @@ struct ReplayResult {
   std::shared_ptr<const slam::MapSnapshot> map;
   slam::MapCorrection correction;
   AssemblerCounters packets;
-  std::uint64_t imu_packets = 0;
   std::uint64_t store_failures = 0;
   std::string store_error;
   std::string source_error;  ///< Why the capture could not be read to its end; empty if it was.
@@ -38,6 +37,7 @@ struct ReplayResult {
 
 struct ReplayOptions {
   slam::SlamConfig slam;
+  Eigen::Quaterniond R_base_sensor = Eigen::Quaterniond::Identity();  ///< As Frontend has it.
   std::filesystem::path session_file;
   std::uint64_t max_scans = 0;  ///< 0: all.
   /// Called after each scan with the number of scans so far; false ends the replay.

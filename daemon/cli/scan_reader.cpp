@@ -11,8 +11,6 @@ const LidarScan* ScanReader::next() {
     const SourceStatus status = source_.read(packet_);
     if (status == SourceStatus::kIdle) continue;
     if (status == SourceStatus::kPacket) {
-      // IMU packets are known by their size; the assembler would count them as bad.
-      if (packet_.bytes.size() == assembler_.format().imu_packet_bytes) continue;
       static_cast<void>(assembler_.push(packet_.bytes));  // Counted inside.
     } else {
       assembler_.flush();

@@ -12,7 +12,7 @@
 
 #include "daemon/cli/command.hpp"
 #include "daemon/cli/text_file.hpp"
-#include "daemon/cli/udp_sender.hpp"
+#include "daemon/emulate/udp_sender.hpp"
 #include "daemon/host_port.hpp"
 #include "daemon/parallel_for.hpp"
 #include "daemon/replay_pacer.hpp"
@@ -68,8 +68,8 @@ void send(const SimulateOptions& options) {
   }
   const int imu_port = options.imu_port != 0 ? options.imu_port : target->port + 1;
   if (imu_port > 65535) throw UsageError("There is no port after 65535; name one with --imu-port.");
-  const UdpSender lidar(target->host, target->port);
-  const UdpSender imu(target->host, static_cast<std::uint16_t>(imu_port));
+  const daemon::UdpSender lidar(target->host, target->port);
+  const daemon::UdpSender imu(target->host, static_cast<std::uint16_t>(imu_port));
   const std::optional<double> pace = daemon::parse_rate(options.pace);
   daemon::ReplayPacer pacer(pace.value_or(1.0));
   synth::SyntheticSource::Pacer wait;

@@ -19,9 +19,9 @@ using daemon::Json;
 void print_losses(const Json& counters) {
   std::string text;
   for (const char* name :
-       {"kernel_drops", "queue_drops", "missing_packets", "late_packets", "duplicate_packets",
-        "bad_size", "bad_type", "bad_serial", "bad_columns", "incomplete_scans", "paused_scans",
-        "dropped_keyframes", "store_failures"}) {
+       {"kernel_drops", "foreign_packets", "early_packets", "queue_drops", "missing_packets",
+        "late_packets", "duplicate_packets", "bad_size", "bad_type", "bad_serial", "bad_columns",
+        "incomplete_scans", "paused_scans", "dropped_keyframes", "store_failures"}) {
     const auto value = counters.value(name, std::uint64_t{0});
     if (value > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, value);
   }
@@ -45,6 +45,9 @@ void print(const Json& status) {
       "sensor     {} ({}){}\n", status["sensor_state"].get<std::string>(),
       status["source"].get<std::string>(),
       status.contains("sensor_error") ? ": " + status["sensor_error"].get<std::string>() : "");
+  if (status.contains("sensor_session") && status["sensor_session"].contains("failure")) {
+    fmt::print("           {}\n", status["sensor_session"]["failure"].get<std::string>());
+  }
   if (status.contains("age_ms")) {
     fmt::print("last pose  {} s, {:.0f} ms ago\n", status["t"].get<std::string>(),
                status["age_ms"].get<double>());

@@ -31,6 +31,12 @@ std::string seconds_text(SensorTime stamp) {
   return fmt::format("{}.{:09}", seconds, rest_ns);
 }
 
+std::size_t count_not_rising(std::span<const StampedPose> poses) {
+  std::size_t rising = 0;
+  for_each_rising(poses, [&](const StampedPose&) { ++rising; });
+  return poses.size() - rising;
+}
+
 void write_tum(const std::filesystem::path& file, std::span<const StampedPose> poses) {
   std::string text;
   for_each_rising(poses, [&](const StampedPose& pose) {

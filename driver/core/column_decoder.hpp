@@ -15,7 +15,12 @@ namespace glint {
 using DecodeColumns = void (*)(const PacketFormat& format, const std::byte* pixels, int count,
                                int first_column, LidarScan& scan);
 
+enum class DecoderPath {
+  kFastest,   ///< The best that this processor can.
+  kPortable,  ///< What every processor can. For tests; the results are the same.
+};
+
 /// The decoder compiled for a profile's layout.
-DecodeColumns column_decoder(LidarProfile profile);
+DecodeColumns column_decoder(LidarProfile profile, DecoderPath path = DecoderPath::kFastest);
 
 }  // namespace glint

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
 #include <string_view>
+#include <vector>
 
 namespace glint {
 namespace {
@@ -17,6 +19,16 @@ TEST(Crc64, GivesTheCheckValueOfItsCatalogueEntry) {
 }
 
 TEST(Crc64, TellsASingleBitApart) { EXPECT_NE(crc_of("123456789"), crc_of("123456788")); }
+
+TEST(Crc64, IsTheSameByTablesAtEverySizeAndPlace) {
+  std::mt19937 random(1);
+  std::vector<std::byte> bytes(700);
+  for (std::byte& byte : bytes) byte = static_cast<std::byte>(random());
+  for (std::size_t size = 0; size < 600; ++size) {
+    const auto part = std::span(bytes).subspan(size % 17, size);
+    ASSERT_EQ(crc64(part), crc64_portable(part)) << size;
+  }
+}
 
 }  // namespace
 }  // namespace glint

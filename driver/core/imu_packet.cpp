@@ -6,10 +6,9 @@
 #include <cstdint>
 
 #include "driver/core/bytes.hpp"
-#include "driver/core/crc64.hpp"
 #include "driver/core/imu_packet_layout.hpp"
+#include "driver/core/packet_fields.hpp"
 #include "driver/core/packet_format.hpp"
-#include "driver/core/profile_table.hpp"
 
 namespace glint {
 namespace {
@@ -28,20 +27,15 @@ bool finite(const ImuSample& sample) {
   return sample.acceleration_mps2.allFinite() && sample.angular_rate_radps.allFinite();
 }
 
-bool crc_matches(std::span<const std::byte> packet) {
-  const auto covered = packet.first(packet.size() - kImuCrcBytes);
-  return load<std::uint64_t>(covered.data() + covered.size()) == crc64(covered);
-}
-
 bool parse_nmea_packet(const ImuPacketFormat& format, std::span<const std::byte> bytes,
                        std::vector<ImuSample>& samples, CrcCheck crc) {
   if (bytes.size() != format.packet_bytes) return false;
   if (load<std::uint16_t>(bytes.data()) != kImuPacketType) return false;
-  if (crc == CrcCheck::kRequired && !crc_matches(bytes)) return false;
+  if (crc == CrcCheck::kRequired && !packet_crc_matches(bytes)) return false;
   const std::byte* from = bytes.data() + kImuHeaderBytes + kImuNmeaBytes;
   for (int i = 0; i < format.measurements; ++i, from += kImuMeasurementBytes) {
     if ((load<std::uint16_t>(from + kImuStatusOffset) & 1U) == 0) continue;
-    const SensorTime time = load_time(from + kImuTimeOffset);
+    const SensorTime time = load_time(from + kImuTimeOffset) + -format.stamp_excess_ns;
     const ImuSample sample{time, time, load_vector(from + kImuAccelerationOffset),
                            load_vector(from + kImuAngularRateOffset)};
     if (finite(sample)) samples.push_back(sample);
@@ -52,7 +46,10 @@ bool parse_nmea_packet(const ImuPacketFormat& format, std::span<const std::byte>
 }  // namespace
 
 ImuPacketFormat::ImuPacketFormat(const SensorInfo& info)
-    : profile(info.imu_profile), measurements(1), packet_bytes(kLegacyImuPacketBytes) {
+    : profile(info.imu_profile),
+      measurements(1),
+      packet_bytes(kLegacyImuPacketBytes),
+      stamp_excess_ns(info.stamp_excess_ns()) {
   if (profile == ImuProfile::kLegacy) return;
   measurements = info.imu_measurements_per_packet;
   packet_bytes = kImuHeaderBytes + kImuNmeaBytes +
@@ -62,9 +59,12 @@ ImuPacketFormat::ImuPacketFormat(const SensorInfo& info)
 bool parse_imu_packet(const ImuPacketFormat& format, std::span<const std::byte> bytes,
                       std::vector<ImuSample>& samples, CrcCheck crc) {
   if (format.profile != ImuProfile::kLegacy) return parse_nmea_packet(format, bytes, samples, crc);
-  const auto sample = parse_legacy_imu(bytes);
-  if (sample) samples.push_back(*sample);
-  return sample.has_value();
+  auto sample = parse_legacy_imu(bytes);
+  if (!sample) return false;
+  sample->accel_time.ns -= format.stamp_excess_ns;
+  sample->gyro_time.ns -= format.stamp_excess_ns;
+  samples.push_back(*sample);
+  return true;
 }
 
 std::optional<ImuSample> parse_legacy_imu(std::span<const std::byte> bytes) {

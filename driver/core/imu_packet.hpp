@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -28,6 +29,7 @@ struct ImuPacketFormat {
   ImuProfile profile;
   int measurements;  ///< In a packet.
   std::size_t packet_bytes;
+  std::int64_t stamp_excess_ns;  ///< As SensorInfo::stamp_excess_ns().
 };
 
 /// Whether the CRC in a packet's footer must match. Old firmware leaves it empty or fills it with

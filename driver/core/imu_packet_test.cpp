@@ -34,6 +34,25 @@ TEST(ImuPacket, UnitsBecomeSiAndTimesAreKeptApart) {
       sample->angular_rate_radps.isApprox(Eigen::Vector3d(M_PI_2, -M_PI, 2.0 * M_PI), 1e-9));
 }
 
+TEST(ImuPacket, TheOffsetOfTaiIsTakenOffTheStampsOfAPtpClock) {
+  for (const ImuProfile profile : {ImuProfile::kLegacy, ImuProfile::kAccel32Gyro32Nmea}) {
+    SensorInfo info = test::make_sensor(LidarProfile::kRng19Rfl8Sig16Nir16, 32, 1024);
+    info.imu_profile = profile;
+    const ImuPacketWriter writer(info);
+    const SensorTime time{40'000'000'000};
+    std::vector<std::byte> packet;
+    writer.write(std::vector<ImuSample>(static_cast<std::size_t>(writer.format().measurements),
+                                        ImuSample{.accel_time = time, .gyro_time = time}),
+                 0, 0, packet);
+    info.clock = ClockSource::kPtp;
+    info.tai_utc_offset_s = 37;
+    std::vector<ImuSample> samples;
+    ASSERT_TRUE(parse_imu_packet(ImuPacketFormat(info), packet, samples));
+    EXPECT_EQ(samples.front().accel_time.ns, 3'000'000'000);
+    EXPECT_EQ(samples.front().gyro_time.ns, 3'000'000'000);
+  }
+}
+
 TEST(ImuPacket, AnotherSizeIsRejected) {
   const auto packet = make_packet(0.0F);
   EXPECT_FALSE(parse_legacy_imu(std::span(packet).first(47)));

@@ -19,10 +19,10 @@ void store_vector(std::byte* to, const Eigen::Vector3d& vector) {
   }
 }
 
-void write_legacy(const ImuSample& sample, std::byte* to) {
-  store(to, sample.accel_time.ns);
-  store(to + kLegacyImuAccelTimeOffset, sample.accel_time.ns);
-  store(to + kLegacyImuGyroTimeOffset, sample.gyro_time.ns);
+void write_legacy(const ImuSample& sample, std::int64_t excess_ns, std::byte* to) {
+  store(to, sample.accel_time.ns + excess_ns);
+  store(to + kLegacyImuAccelTimeOffset, sample.accel_time.ns + excess_ns);
+  store(to + kLegacyImuGyroTimeOffset, sample.gyro_time.ns + excess_ns);
   store_vector(to + kLegacyImuAccelerationOffset, sample.acceleration_mps2 / kStandardGravity_mps2);
   store_vector(to + kLegacyImuAngularRateOffset, sample.angular_rate_radps / kRadiansPerDegree);
 }
@@ -47,7 +47,7 @@ void ImuPacketWriter::write(std::span<const ImuSample> samples, std::uint16_t fr
                             std::vector<std::byte>& out) const {
   out.assign(format_.packet_bytes, std::byte{0});
   if (format_.profile == ImuProfile::kLegacy) {
-    write_legacy(samples.front(), out.data());
+    write_legacy(samples.front(), format_.stamp_excess_ns, out.data());
   } else {
     write_nmea(samples, frame_id, index, out);
   }
@@ -62,7 +62,7 @@ void ImuPacketWriter::write_nmea(std::span<const ImuSample> samples, std::uint16
   std::byte* to = packet + kImuHeaderBytes + kImuNmeaBytes;
   int measurement = index * format_.measurements;
   for (const ImuSample& sample : samples) {
-    store(to + kImuTimeOffset, sample.accel_time.ns);
+    store(to + kImuTimeOffset, sample.accel_time.ns + format_.stamp_excess_ns);
     // Ids are those of the lidar columns that are measured at the same time.
     const int column =
         measurement * columns_per_frame_ / (packets_per_frame_ * format_.measurements);

@@ -50,8 +50,12 @@ struct LidarScan {
   std::uint32_t frame_id = 0;     ///< As on the wire: 16 bits wide, or 32 with a FUSA header.
   std::uint64_t sequence = 0;     ///< Frame id unwrapped since the assembler started, never falls.
   bool sensor_restarted = false;  ///< First scan after the sensor restarted (new init id).
-  Image<std::uint32_t> range_mm;  ///< 0 = no return.
-  Image<std::uint16_t> signal;    ///< Photons.
+  /// The sensor's clock jumped by more than half a scan period since the end of the scan before.
+  /// In the middle of this one, maybe: columns before the jump have their times moved to the clock
+  /// after it.
+  bool clock_jumped = false;
+  Image<std::uint32_t> range_mm;      ///< 0 = no return.
+  Image<std::uint16_t> signal;        ///< Photons.
   Image<std::uint16_t> reflectivity;  ///< 16-bit on old legacy firmware, calibrated 0-255 later.
   Image<std::uint16_t> near_ir;       ///< Photons of ambient light.
   Image<std::uint32_t> range2_mm;     ///< Second return, dual profiles only.

@@ -14,8 +14,17 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMaxBytes = 1U << 20U;
 constexpr int kMaxDepth = 16;
+constexpr std::size_t kMaxTextBytes = 128;
+
+// What a stranger wrote, made fit for a message.
+std::string shown(std::string_view text) {
+  std::string result(text.substr(0, kMaxTextBytes));
+  for (char& c : result) {
+    if (c < ' ' || c > '~') c = '?';
+  }
+  return result;
+}
 
 // Watches the parser for what it would let pass: depth, and keys that come twice.
 class ParseGuard {
@@ -27,9 +36,10 @@ class ParseGuard {
       case json::parse_event_t::object_start:
       case json::parse_event_t::array_start:
         if (depth >= kMaxDepth) {
-          throw MetadataError(
-              fmt::format("metadata {}: nested deeper than {} levels, so it is no Ouster metadata",
-                          name_, kMaxDepth));
+          throw MetadataError(fmt::format(
+              "metadata {}: nested deeper than {} levels, so it is no Ouster metadata; name "
+              "the sensor's",
+              name_, kMaxDepth));
         }
         if (event == json::parse_event_t::object_start) keys_.emplace_back();
         break;
@@ -40,7 +50,7 @@ class ParseGuard {
         if (!keys_.back().insert(parsed.get<std::string>()).second) {
           throw MetadataError(fmt::format(
               "metadata {}: the key {} comes twice, so it is unclear which value holds; keep one",
-              name_, parsed.get<std::string>()));
+              name_, shown(parsed.get_ref<const std::string&>())));
         }
         break;
       default:
@@ -69,9 +79,10 @@ std::optional<int> as_integer(const json& value, int least, int largest) {
 }  // namespace
 
 json parse_metadata_json(std::string_view text, std::string_view name) {
-  if (text.size() > kMaxBytes) {
+  if (text.size() > kMaxMetadataBytes) {
     throw MetadataError(fmt::format(
-        "metadata {}: larger than {} bytes, so it is no Ouster metadata", name, kMaxBytes));
+        "metadata {}: larger than {} bytes, so it is no Ouster metadata; name the sensor's", name,
+        kMaxMetadataBytes));
   }
   json root;
   try {
@@ -86,7 +97,9 @@ json parse_metadata_json(std::string_view text, std::string_view name) {
         name, error.byte));
   } catch (const json::exception&) {
     throw MetadataError(
-        fmt::format("metadata {}: holds a number beyond what JSON readers take", name));
+        fmt::format("metadata {}: holds a number beyond what JSON readers take; get it from the "
+                    "sensor at /api/v1/sensor/metadata",
+                    name));
   }
   if (!root.is_object()) {
     throw MetadataError(fmt::format(
@@ -119,7 +132,12 @@ std::optional<std::string> MetadataGroup::text(const char* key) const {
   const json* value = find(key);
   if (value == nullptr) return std::nullopt;
   if (!value->is_string()) fail(key, "must be a string");
-  return value->get<std::string>();
+  const auto& text = value->get_ref<const std::string&>();
+  if (text.size() > kMaxTextBytes || shown(text) != text) {
+    fail(key,
+         fmt::format("must be a string of at most {} printable ASCII characters", kMaxTextBytes));
+  }
+  return text;
 }
 
 std::optional<int> MetadataGroup::integer(const char* key, int least, int largest) const {

@@ -10,6 +10,9 @@
 
 namespace glint {
 
+/// Most that is read of metadata; real ones have some 10 kB.
+constexpr std::size_t kMaxMetadataBytes = 1U << 20U;
+
 /// Parses untrusted metadata JSON: at most 1 MiB, at most 16 levels deep, no key twice in an
 /// object.
 /// @throws MetadataError that begins with "metadata NAME".

@@ -25,6 +25,7 @@ std::string to_metadata_json(const SensorInfo& info) {
                          {"initialization_id", info.init_id}};
   auto& config = json["config_params"];
   if (!info.lidar_mode.empty()) config["lidar_mode"] = info.lidar_mode;
+  config["timestamp_mode"] = to_timestamp_mode(info.clock);
   config["udp_port_lidar"] = info.lidar_port;
   config["udp_port_imu"] = info.imu_port;
   json["lidar_data_format"] = {

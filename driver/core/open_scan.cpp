@@ -60,7 +60,8 @@ double column_spacing_ns(const LidarScan& scan, std::int64_t scan_period_ns) {
 }  // namespace
 
 ColumnWindow::ColumnWindow(const SensorInfo& info)
-    : expected(static_cast<std::size_t>(info.columns_per_frame)) {
+    : expected(static_cast<std::size_t>(info.columns_per_frame)),
+      packet_expected(expected.size() / static_cast<std::size_t>(info.columns_per_packet)) {
   const auto [first, final] = info.column_window;
   const bool wraps = first > final;
   for (int m = 0; m < info.columns_per_frame; ++m) {
@@ -69,7 +70,9 @@ ColumnWindow::ColumnWindow(const SensorInfo& info)
     if (!inside) continue;
     ++count;
     last = m;
+    packet_expected[static_cast<std::size_t>(m / info.columns_per_packet)] = 1;
   }
+  packets = static_cast<int>(std::ranges::count(packet_expected, std::uint8_t{1}));
   for (int m = 0, seen = 0; m < info.columns_per_frame; ++m) {
     if (expected[static_cast<std::size_t>(m)] == 0 || ++seen <= count / 2) continue;
     middle = m;
@@ -77,7 +80,7 @@ ColumnWindow::ColumnWindow(const SensorInfo& info)
   }
 }
 
-void OpenScan::start(std::uint32_t frame_id, std::int64_t unwrapped_id, SensorTime time) {
+void OpenScan::start(std::uint32_t frame_id, std::int64_t unwrapped_id, std::int64_t position) {
   scan.frame_id = frame_id;
   scan.sequence = static_cast<std::uint64_t>(unwrapped_id);
   scan.sensor_restarted = false;
@@ -87,10 +90,10 @@ void OpenScan::start(std::uint32_t frame_id, std::int64_t unwrapped_id, SensorTi
   expected_arrived = 0;
   newer_packets = 0;
   sequence = unwrapped_id;
-  first_time = time;
+  opened_at = position;
 }
 
-void OpenScan::finish(const ColumnWindow& window, std::int64_t scan_period_ns) {
+void OpenScan::finish(const ColumnWindow& window, std::int64_t scan_period_ns, ClockWatch& clock) {
   const int columns = static_cast<int>(arrived.size());
   for (int begin = 0; begin < columns;) {
     if (valid(scan, begin)) {
@@ -105,6 +108,7 @@ void OpenScan::finish(const ColumnWindow& window, std::int64_t scan_period_ns) {
     begin = end;
   }
   scan.columns_expected = window.count;
+  scan.clock_jumped = clock.jumped(scan);
   scan.end_time = estimate_column_time(scan, window.last, scan_period_ns);
   scan.mid_time = estimate_column_time(scan, window.middle, scan_period_ns);
 }

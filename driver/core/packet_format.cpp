@@ -25,6 +25,7 @@ PacketFormat::PacketFormat(const SensorInfo& info)
       pixels_per_column(info.pixels_per_column),
       header(info.profile == LidarProfile::kFusaRng15Rfl8Nir8Dual ? PacketHeader::kFusa
                                                                   : info.header),
+      stamp_excess_ns(info.stamp_excess_ns()),
       imu_packet_bytes(ImuPacketFormat(info).packet_bytes) {
   const auto bytes = [](int count) { return static_cast<std::size_t>(count); };
   column_bytes = bytes(layout->column_header_bytes) +

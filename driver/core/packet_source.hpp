@@ -34,8 +34,13 @@ class PacketSource {
   virtual SourceStatus read(RawPacket& packet) = 0;
   /// Makes read() return kEnd soon.
   virtual void stop() = 0;
+  /// From here on only datagrams from this IP address are taken; empty: from any. A source that
+  /// knows its sensor by other means does nothing. May be called from any thread.
+  virtual void set_source_address(const std::string& address) { static_cast<void>(address); }
   /// Datagrams that the kernel dropped before they could be read, since start; 0 in replay.
   [[nodiscard]] virtual std::uint64_t kernel_drops() const { return 0; }
+  /// Datagrams from others than the sensor, since start; 0 where any sender is taken.
+  [[nodiscard]] virtual std::uint64_t foreign() const { return 0; }
   /// What a user should know of the source, a sentence each; more may come at its end.
   [[nodiscard]] virtual std::vector<std::string> notices() const { return {}; }
   /// A sentence on what broke after kError; empty otherwise.

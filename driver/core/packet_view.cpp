@@ -2,11 +2,8 @@
 // Copyright 2026 The Glint Authors
 #include "driver/core/packet_view.hpp"
 
-#include <algorithm>
-
 #include "driver/core/bytes.hpp"
-#include "driver/core/crc64.hpp"
-#include "driver/core/profile_table.hpp"
+#include "driver/core/packet_fields.hpp"
 
 namespace glint {
 namespace {
@@ -17,27 +14,6 @@ std::optional<PacketView> refuse(PacketError why, PacketError* error) {
 }
 
 }  // namespace
-
-SensorTime ColumnView::time() const {
-  constexpr std::uint64_t kLatest_ns = 1ULL << 62U;
-  return {static_cast<std::int64_t>(
-      std::min(load<std::uint64_t>(data_ + kColumnTimeOffset), kLatest_ns))};
-}
-
-std::uint16_t ColumnView::measurement_id() const {
-  return load<std::uint16_t>(data_ + kMeasurementIdOffset);
-}
-
-std::uint32_t ColumnView::status() const {
-  if (!format_->legacy()) return load<std::uint16_t>(data_ + kColumnStatusOffset);
-  return load<std::uint32_t>(data_ + format_->column_bytes - sizeof(std::uint32_t));
-}
-
-std::uint16_t ColumnView::legacy_frame_id() const {
-  return load<std::uint16_t>(data_ + kLegacyFrameIdOffset);
-}
-
-const std::byte* ColumnView::pixels() const { return data_ + format_->layout->column_header_bytes; }
 
 std::uint32_t ColumnView::value(Channel channel, int row) const {
   const PixelField& field = format_->layout->field(channel);
@@ -53,31 +29,19 @@ std::uint32_t ColumnView::value(Channel channel, int row) const {
 
 namespace {
 
-constexpr std::size_t kHeaderBytes = 32;
-
 const HeaderLayout& layout_of(const PacketFormat& format) { return header_layout(format.header); }
-
-std::uint16_t type_of(const HeaderLayout& layout, const std::byte* packet) {
-  return layout.type_bits == 8 ? load<std::uint8_t>(packet) : load<std::uint16_t>(packet);
-}
-
-std::uint32_t init_id_of(const HeaderLayout& layout, const std::byte* packet) {
-  return load<std::uint32_t>(packet + layout.init_id_offset) & 0xFF'FFFFU;
-}
-
-std::uint64_t serial_number_of(const HeaderLayout& layout, const std::byte* packet) {
-  return load<std::uint64_t>(packet + layout.serial_number_offset) & 0xFF'FFFF'FFFFU;
-}
 
 }  // namespace
 
 std::optional<PacketHeader> recognise_header(std::span<const std::byte> packet,
-                                             std::uint64_t serial_number, std::uint32_t init_id) {
-  if (packet.size() < kHeaderBytes || (serial_number == 0 && init_id == 0)) return std::nullopt;
+                                             std::uint64_t serial_number, std::uint32_t init_id,
+                                             std::uint16_t type) {
+  if (packet.size() < kPacketHeaderBytes || (serial_number == 0 && init_id == 0))
+    return std::nullopt;
   const auto fits = [&](const HeaderLayout& layout) {
-    return type_of(layout, packet.data()) == kLidarPacketType &&
-           (serial_number == 0 || serial_number_of(layout, packet.data()) == serial_number) &&
-           (serial_number != 0 || init_id_of(layout, packet.data()) == init_id);
+    if (packet_type(layout, packet.data()) != type) return false;
+    return serial_number != 0 ? packet_serial_number(layout, packet.data()) == serial_number
+                              : packet_init_id(layout, packet.data()) == init_id;
   };
   const bool standard = fits(kStandardHeader);
   const bool fusa = fits(kFusaHeader);
@@ -88,7 +52,7 @@ std::optional<PacketHeader> recognise_header(std::span<const std::byte> packet,
 std::optional<PacketView> PacketView::parse(const PacketFormat& format,
                                             std::span<const std::byte> bytes, PacketError* error) {
   if (bytes.size() != format.packet_bytes) return refuse(PacketError::kSize, error);
-  if (!format.legacy() && type_of(layout_of(format), bytes.data()) != kLidarPacketType) {
+  if (!format.legacy() && packet_type(layout_of(format), bytes.data()) != kLidarPacketType) {
     return refuse(PacketError::kType, error);
   }
   if (error != nullptr) *error = PacketError::kNone;
@@ -102,11 +66,11 @@ std::uint32_t PacketView::frame_id() const {
 }
 
 std::uint32_t PacketView::init_id() const {
-  return format_->legacy() ? 0 : init_id_of(layout_of(*format_), bytes_.data());
+  return format_->legacy() ? 0 : packet_init_id(layout_of(*format_), bytes_.data());
 }
 
 std::uint64_t PacketView::serial_number() const {
-  return format_->legacy() ? 0 : serial_number_of(layout_of(*format_), bytes_.data());
+  return format_->legacy() ? 0 : packet_serial_number(layout_of(*format_), bytes_.data());
 }
 
 PacketHealth PacketView::health() const {
@@ -119,16 +83,6 @@ PacketHealth PacketView::health() const {
           static_cast<std::uint8_t>(byte(kShotLimitingStateOffset) & kState)};
 }
 
-bool PacketView::crc_matches() const {
-  if (format_->legacy()) return false;
-  const auto covered = bytes_.first(bytes_.size() - kPacketCrcBytes);
-  return crc64(covered) == load<std::uint64_t>(covered.data() + covered.size());
-}
-
-ColumnView PacketView::column(int index) const {
-  const auto offset = static_cast<std::size_t>(format_->layout->packet_header_bytes) +
-                      static_cast<std::size_t>(index) * format_->column_bytes;
-  return {*format_, bytes_.data() + offset};
-}
+bool PacketView::crc_matches() const { return !format_->legacy() && packet_crc_matches(bytes_); }
 
 }  // namespace glint

@@ -48,6 +48,19 @@ TEST(PacketView, LegacyFieldsAreWhereTheManualPutsThem) {
   EXPECT_EQ(read.value(Channel::kRange2, 7), 0U);
 }
 
+TEST(PacketView, TheOffsetOfTaiIsTakenOffTheStampsOfAPtpClockOnly) {
+  SensorInfo info = make_sensor(LidarProfile::kLegacy, 64, 1024);
+  info.tai_utc_offset_s = 37;
+  Bytes packet(12608);
+  store<std::uint64_t>(packet.data(), 37'000'000'005);
+  EXPECT_EQ(PacketView::parse(PacketFormat(info), packet)->column(0).time().ns, 37'000'000'005);
+  info.clock = ClockSource::kPtp;
+  EXPECT_EQ(PacketView::parse(PacketFormat(info), packet)->column(0).time().ns, 5);
+  info.tai_utc_offset_s = -60;
+  store<std::uint64_t>(packet.data(), ~std::uint64_t{0});
+  EXPECT_GT(PacketView::parse(PacketFormat(info), packet)->column(0).time().ns, 0);
+}
+
 TEST(PacketView, DualReturnFieldsAreWhereTheManualPutsThem) {
   const PacketFormat format(make_sensor(LidarProfile::kRng19Rfl8Sig16Nir16Dual, 32, 1024));
   Bytes packet(8448);

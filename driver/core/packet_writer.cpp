@@ -44,7 +44,7 @@ void write_pixels(const PacketFormat& format, const LidarScan& scan, int m, std:
 
 void write_column(const PacketFormat& format, const LidarScan& scan, int m, std::byte* column) {
   const auto index = static_cast<std::size_t>(m);
-  store(column + kColumnTimeOffset, scan.column_time[index].ns);
+  store(column + kColumnTimeOffset, scan.column_time[index].ns + format.stamp_excess_ns);
   store(column + kMeasurementIdOffset, static_cast<std::uint16_t>(m));
   const std::uint32_t status = scan.column_status[index];
   if (format.legacy()) {

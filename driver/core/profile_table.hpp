@@ -3,8 +3,9 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 
-#include "driver/core/packet_format.hpp"
+#include "driver/core/profile_layout.hpp"
 
 namespace glint {
 
@@ -21,13 +22,16 @@ inline constexpr HeaderLayout kFusaHeader{8, 4, 1, 11, 8};
 constexpr const HeaderLayout& header_layout(PacketHeader header) {
   return header == PacketHeader::kFusa ? kFusaHeader : kStandardHeader;
 }
+constexpr std::size_t kPacketHeaderBytes = 32;
 constexpr std::uint16_t kLidarPacketType = 1;
+constexpr std::uint16_t kZonePacketType = 3;
+constexpr std::size_t kZonePacketBytes = 680;  // whatever the zones
 // The same in both.
 constexpr int kThermalCountdownOffset = 16;
 constexpr int kShotLimitingCountdownOffset = 17;
 constexpr int kThermalStateOffset = 18;  // low 4 bits
 constexpr int kShotLimitingStateOffset = 19;
-constexpr int kPacketCrcBytes = 8;  // at the very end
+constexpr std::size_t kPacketCrcBytes = 8;  // at the very end
 
 // Offsets inside the column header and footer.
 constexpr int kColumnTimeOffset = 0;

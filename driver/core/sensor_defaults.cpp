@@ -9,15 +9,6 @@
 namespace glint {
 namespace {
 
-// The major number of "v2.3.0"; 0 when the metadata does not say.
-int firmware_major(const SensorInfo& info) {
-  std::string_view text = info.firmware;
-  if (text.starts_with('v')) text.remove_prefix(1);
-  int major = 0;
-  std::from_chars(text.data(), text.data() + text.size(), major);
-  return major;
-}
-
 bool is_line(const SensorInfo& info, std::string_view line) {
   return info.product_line.starts_with(line);
 }
@@ -37,6 +28,14 @@ Eigen::Matrix4d translation_mm(double x, double y, double z) {
 }
 
 }  // namespace
+
+int firmware_major(const SensorInfo& info) {
+  std::string_view text = info.firmware;
+  if (text.starts_with('v')) text.remove_prefix(1);
+  int major = 0;
+  std::from_chars(text.data(), text.data() + text.size(), major);
+  return major;
+}
 
 double default_beam_origin_mm(const SensorInfo& info) {
   if (first_generation(info)) return 12.163;

@@ -9,6 +9,9 @@
 
 namespace glint {
 
+/// The major number of the firmware, 2 of "v2.3.0"; 0 when the metadata does not say.
+int firmware_major(const SensorInfo& info);
+
 // What holds for a sensor whose metadata does not say: values of its generation, told by product
 // line and firmware. Read from `info`: product_line, firmware, columns_per_frame, beam_azimuth_deg.
 

@@ -9,40 +9,16 @@
 #include <array>
 #include <charconv>
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "driver/core/azimuth_window.hpp"
 #include "driver/core/metadata_json.hpp"
+#include "driver/core/profile_names.hpp"
 #include "driver/core/sensor_defaults.hpp"
 
 namespace glint {
 namespace {
-
-struct ProfileName {
-  LidarProfile profile;
-  std::string_view name;
-};
-constexpr std::array<ProfileName, 13> kProfileNames{{
-    {LidarProfile::kLegacy, "LEGACY"},
-    {LidarProfile::kRng19Rfl8Sig16Nir16, "RNG19_RFL8_SIG16_NIR16"},
-    {LidarProfile::kRng19Rfl8Sig16Nir16Dual, "RNG19_RFL8_SIG16_NIR16_DUAL"},
-    {LidarProfile::kRng15Rfl8Nir8, "RNG15_RFL8_NIR8"},
-    {LidarProfile::kRng15Rfl8Win8, "RNG15_RFL8_WIN8"},
-    {LidarProfile::kRng15Rfl8Nir8Dual, "RNG15_RFL8_NIR8_DUAL"},
-    {LidarProfile::kFusaRng15Rfl8Nir8Dual, "FUSA_RNG15_RFL8_NIR8_DUAL"},
-    {LidarProfile::kFiveWordPixel, "FIVE_WORD_PIXEL"},
-    {LidarProfile::kRng15Rfl8Nir8Zone16, "RNG15_RFL8_NIR8_ZONE16"},
-    {LidarProfile::kRng19Rfl8Sig16Nir16Zone16, "RNG19_RFL8_SIG16_NIR16_ZONE16"},
-    {LidarProfile::kRng19Rfl8Sig16Zone16Dual, "RNG19_RFL8_SIG16_ZONE16_DUAL"},
-    {LidarProfile::kRng19Rfl8Sig16Nir16Rgb16, "RNG19_RFL8_SIG16_NIR16_RGB16"},
-    {LidarProfile::kRng19Rfl8Sig16Nir16Rgb16Dual, "RNG19_RFL8_SIG16_NIR16_RGB16_DUAL"},
-}};
-
-constexpr std::array kImuProfileNames{
-    std::pair{ImuProfile::kLegacy, std::string_view("LEGACY")},
-    std::pair{ImuProfile::kAccel32Gyro32Nmea, std::string_view("ACCEL32_GYRO32_NMEA")},
-};
 
 // Far above any sensor; keeps sizes computed from metadata small enough to allocate.
 constexpr int kMaxColumnsPerFrame = 8192;
@@ -156,18 +132,15 @@ void read_profile(const MetadataGroup& format, SensorInfo& info) {
     format.fail("udp_profile_lidar",
                 "is OFF: the sensor sends no lidar packets; set it to RNG19_RFL8_SIG16_NIR16");
   }
-  const auto* known = std::find_if(kProfileNames.begin(), kProfileNames.end(),
-                                   [&](const auto& entry) { return entry.name == name; });
-  if (known == kProfileNames.end()) {
-    std::vector<std::string_view> names;
-    names.reserve(kProfileNames.size());
-    for (const auto& entry : kProfileNames) names.push_back(entry.name);
+  const auto profile = lidar_profile_named(name);
+  if (!profile) {
     format.fail(
         "udp_profile_lidar",
-        fmt::format("is {}, a profile this version does not read; set the sensor to one of {}",
-                    name, fmt::join(names, ", ")));
+        fmt::format("is {}, a profile this version does not read (the nearest that it reads "
+                    "is {}); set the sensor to one of {}",
+                    name, to_string(nearest_lidar_profile(name)), lidar_profile_list()));
   }
-  info.profile = known->profile;
+  info.profile = *profile;
   info.header = read_header(format, info.profile);
 }
 
@@ -175,16 +148,15 @@ void read_profile(const MetadataGroup& format, SensorInfo& info) {
 void read_imu_format(const Groups& groups, SensorInfo& info) {
   const auto said = groups.format.text("udp_profile_imu");
   const std::string name = said ? *said : groups.config.text("udp_profile_imu").value_or("LEGACY");
-  const auto* known = std::find_if(kImuProfileNames.begin(), kImuProfileNames.end(),
-                                   [&](const auto& entry) { return entry.second == name; });
-  if (known == kImuProfileNames.end()) {
+  const auto profile = imu_profile_named(name);
+  if (!profile) {
     info.warnings.push_back(
         fmt::format("IMU packets of profile {} are not read; set udp_profile_imu to LEGACY or "
                     "ACCEL32_GYRO32_NMEA to use the IMU",
                     name));
     return;
   }
-  info.imu_profile = known->first;
+  info.imu_profile = *profile;
   const MetadataGroup& imu = groups.imu_format;
   if (info.imu_profile == ImuProfile::kLegacy) return;
   info.imu_measurements_per_packet =
@@ -200,7 +172,9 @@ void read_mode(const Groups& groups, SensorInfo& info) {
   const auto mode = parse_lidar_mode(info.lidar_mode);
   if (!info.lidar_mode.empty() && !mode) {
     groups.config.fail("lidar_mode",
-                       fmt::format("is {}, which is not of the form 1024x10", info.lidar_mode));
+                       fmt::format("is {}, which is not of the form 1024x10; get the metadata "
+                                   "again from the sensor",
+                                   info.lidar_mode));
   }
   if (groups.format.absent()) {
     if (!mode) {
@@ -231,6 +205,36 @@ void read_mode(const Groups& groups, SensorInfo& info) {
       groups.format.number("fps", 0.1, 100.0).value_or(mode ? mode->second : kDefaultScanRate_hz);
 }
 
+// Firmware 1.x tells the azimuth window only, from which the columns follow.
+void read_windows(const Groups& groups, SensorInfo& info) {
+  const int columns = info.columns_per_frame;
+  const int firmware = firmware_major(info);
+  const auto azimuth = read_azimuth_window(groups.config, firmware);
+  if (azimuth) {
+    const std::string warning = azimuth_window_warning(*azimuth, firmware);
+    if (!warning.empty()) info.warnings.push_back(warning);
+  }
+  const auto window = groups.format.integers("column_window", 0, columns - 1);
+  if (window && window->size() != 2) {
+    groups.format.fail("column_window", "must hold two columns; get the metadata again");
+  }
+  info.column_window = window ? std::pair{window->front(), window->back()}
+                              : azimuth.value_or(AzimuthWindow{}).columns(columns);
+}
+
+void read_clock(const Groups& groups, SensorInfo& info) {
+  const auto mode = groups.config.text("timestamp_mode");
+  if (!mode) return;
+  if (const auto clock = clock_of_timestamp_mode(*mode)) {
+    info.clock = *clock;
+    return;
+  }
+  info.warnings.push_back(fmt::format(
+      "the metadata's timestamp_mode {} is not known, so times are taken to be those of the "
+      "sensor's oscillator; say what they are with sensor.clock",
+      *mode));
+}
+
 void read_data_format(const Groups& groups, SensorInfo& info) {
   const MetadataGroup& format = groups.format;
   read_profile(format, info);
@@ -258,10 +262,7 @@ void read_data_format(const Groups& groups, SensorInfo& info) {
                                                   "metadata again",
                                                   info.pixel_shift_by_row.size(), rows));
   }
-  const auto window = format.integers("column_window", 0, columns - 1);
-  if (window && window->size() != 2) format.fail("column_window", "must hold two columns");
-  info.column_window =
-      window ? std::pair{window->front(), window->back()} : std::pair{0, columns - 1};
+  read_windows(groups, info);
 }
 
 // A rigid motion given as 16 numbers, row by row, in mm.
@@ -293,36 +294,7 @@ void read_transforms(const Groups& groups, SensorInfo& info) {
       read_transform(groups.imu, "imu_to_sensor_transform").value_or(default_imu_to_sensor(info));
 }
 
-// An azimuth window of a few hundredths of a degree is a unit mistaken: people type 360.
-void check_azimuth_window(const MetadataGroup& config, SensorInfo& info) {
-  const auto window = config.integers("azimuth_window", 0, 360'000);
-  if (!window || window->size() != 2 || window->front() >= window->back()) return;
-  const int width_mdeg = window->back() - window->front();
-  constexpr int kSuspicious_mdeg = 1000;
-  if (width_mdeg >= kSuspicious_mdeg) return;
-  info.warnings.push_back(fmt::format(
-      "the azimuth window is {} thousandths of a degree wide; a whole turn is 0 to 360000",
-      width_mdeg));
-}
-
 }  // namespace
-
-std::span<const LidarProfile> lidar_profiles() {
-  static constexpr auto kAll = [] {
-    std::array<LidarProfile, kProfileNames.size()> all{};
-    for (std::size_t i = 0; i < all.size(); ++i) all[i] = kProfileNames[i].profile;
-    return all;
-  }();
-  return kAll;
-}
-
-std::string_view to_string(LidarProfile profile) {
-  return kProfileNames[static_cast<std::size_t>(profile)].name;
-}
-
-std::string_view to_string(ImuProfile profile) {
-  return kImuProfileNames[static_cast<std::size_t>(profile)].second;
-}
 
 SensorInfo parse_sensor_info(std::string_view json, std::string_view name) {
   const nlohmann::json document = parse_metadata_json(json, name);
@@ -333,7 +305,7 @@ SensorInfo parse_sensor_info(std::string_view json, std::string_view name) {
   read_data_format(groups, info);
   read_imu_format(groups, info);
   read_transforms(groups, info);
-  check_azimuth_window(groups.config, info);
+  read_clock(groups, info);
   return info;
 }
 
@@ -343,7 +315,11 @@ SensorInfo load_sensor_info(const std::filesystem::path& file) {
     throw MetadataError(fmt::format(
         "metadata {}: the file cannot be read; name the sensor's metadata file", file.string()));
   }
-  const std::string json{std::istreambuf_iterator<char>(in), {}};
+  // One byte more than is allowed, so that a file that is larger, or endless, is told from one that
+  // is not.
+  std::string json(kMaxMetadataBytes + 1, '\0');
+  in.read(json.data(), static_cast<std::streamsize>(json.size()));
+  json.resize(static_cast<std::size_t>(in.gcount()));
   return parse_sensor_info(json, file.string());
 }
 

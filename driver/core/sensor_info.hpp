@@ -11,35 +11,14 @@
 #include <utility>
 #include <vector>
 
+#include "driver/core/clock_source.hpp"
 #include "driver/core/error.hpp"
+#include "driver/core/profile_layout.hpp"
 
 namespace glint {
 
-/// What a lidar packet's pixels hold (sensor manual, "lidar data packet format").
-enum class LidarProfile {
-  kLegacy,
-  kRng19Rfl8Sig16Nir16,
-  kRng19Rfl8Sig16Nir16Dual,
-  kRng15Rfl8Nir8,
-  kRng15Rfl8Win8,
-  kRng15Rfl8Nir8Dual,
-  kFusaRng15Rfl8Nir8Dual,
-  kFiveWordPixel,
-  kRng15Rfl8Nir8Zone16,
-  kRng19Rfl8Sig16Nir16Zone16,
-  kRng19Rfl8Sig16Zone16Dual,
-  kRng19Rfl8Sig16Nir16Rgb16,
-  kRng19Rfl8Sig16Nir16Rgb16Dual,
-};
-
-/// All of them, in that order.
+/// All lidar profiles, in the order of LidarProfile.
 std::span<const LidarProfile> lidar_profiles();
-
-/// Where the header of lidar packets, which legacy ones lack, has its fields.
-enum class PacketHeader {
-  kStandard,  ///< 16-bit type and frame id.
-  kFusa,      ///< 8-bit type, 32-bit frame id, and ids elsewhere.
-};
 
 /// The profile's name as sensors spell it, e.g. "RNG19_RFL8_SIG16_NIR16".
 std::string_view to_string(LidarProfile profile);
@@ -87,12 +66,23 @@ struct SensorInfo {
   int imu_measurements_per_packet = 8;
   int imu_packets_per_frame = 8;
 
+  /// What sets the sensor's clock; the oscillator when the metadata does not say.
+  ClockSource clock = ClockSource::kInternal;
+  /// TAI minus UTC, s: what a user wants to be taken off the stamps of a PTP clock. Not in
+  /// metadata.
+  int tai_utc_offset_s = 0;
+
   int lidar_port = 7502;  ///< UDP destination port of lidar packets; 7502 when not said.
   int imu_port = 7503;    ///< UDP destination port of IMU packets; 7503 when not said.
 
   /// Things a user should know but that do not stop anything, one sentence each.
   std::vector<std::string> warnings;
 
+  /// What is subtracted from every stamp on the wire, of lidar columns and IMU measurements, ns.
+  [[nodiscard]] std::int64_t stamp_excess_ns() const {
+    constexpr std::int64_t kSecond_ns = 1'000'000'000;
+    return clock == ClockSource::kPtp ? tai_utc_offset_s * kSecond_ns : 0;
+  }
   /// Nominal time between two scans, ns.
   [[nodiscard]] std::int64_t scan_period_ns() const {
     return static_cast<std::int64_t>(1e9 / scan_rate_hz);

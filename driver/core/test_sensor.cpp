@@ -54,7 +54,7 @@ SensorTime nominal_time(const SensorInfo& info, std::int64_t scan, int column) {
   return {kStreamStart_ns + scan * period_ns + column * period_ns / info.columns_per_frame};
 }
 
-LidarScan random_scan(const SensorInfo& info, std::uint16_t frame_id, std::mt19937& random) {
+LidarScan random_scan(const SensorInfo& info, std::uint32_t frame_id, std::mt19937& random) {
   const PacketFormat format(info);
   LidarScan scan(format);
   scan.frame_id = frame_id;

@@ -19,7 +19,7 @@ using Bytes = std::vector<std::byte>;
 SensorInfo make_sensor(LidarProfile profile, int rows, int columns);
 
 /// A complete scan whose every pixel is random over all that its field can hold.
-LidarScan random_scan(const SensorInfo& info, std::uint16_t frame_id, std::mt19937& random);
+LidarScan random_scan(const SensorInfo& info, std::uint32_t frame_id, std::mt19937& random);
 
 /// Nominal time of a column of the k-th scan of a stream.
 SensorTime nominal_time(const SensorInfo& info, std::int64_t scan, int column);

@@ -2,8 +2,11 @@
 // Copyright 2026 The Glint Authors
 #include "driver/core/xyz_lut.hpp"
 
+#include <cassert>
 #include <cmath>
 #include <numbers>
+
+#include "driver/core/destagger.hpp"
 
 namespace glint {
 namespace {
@@ -40,6 +43,22 @@ XyzLut::XyzLut(const SensorInfo& info)
       direction_.emplace_back(kMetresPerMillimetre * (rotation * beam));
       offset_.emplace_back(kMetresPerMillimetre * (rotation * start_mm + translation_mm));
     }
+  }
+}
+
+void XyzLut::destaggered_points(const Image<std::uint32_t>& range_mm,
+                                std::span<const int> pixel_shift_by_row,
+                                std::span<Eigen::Vector3d> out) const {
+  assert(range_mm.rows == rows_ && range_mm.cols == columns_);
+  assert(pixel_shift_by_row.size() == static_cast<std::size_t>(rows_));
+  assert(out.size() == direction_.size());
+  Eigen::Vector3d* to = out.data();
+  for (int r = 0; r < rows_; ++r) {
+    // The row is rotated about the column that comes first.
+    const int first =
+        staggered_column(0, pixel_shift_by_row[static_cast<std::size_t>(r)], columns_);
+    for (int m = first; m < columns_; ++m) *to++ = point(r, m, range_mm(r, m));
+    for (int m = 0; m < first; ++m) *to++ = point(r, m, range_mm(r, m));
   }
 }
 

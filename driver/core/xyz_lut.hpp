@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <vector>
 
 #include "driver/core/lidar_scan.hpp"
@@ -23,6 +24,12 @@ class XyzLut {
                    static_cast<std::size_t>(column);
     return direction_[i] * static_cast<double>(range_mm) + offset_[i];
   }
+  /// The points of a whole scan, DESTAGGERED, in one pass over its STAGGERED ranges: out[r * W + c]
+  /// is point(r, staggered_column(c, pixel_shift_by_row[r], W), its range). `range_mm` has the
+  /// sensor's rows and columns, and `out` room for as many points.
+  void destaggered_points(const Image<std::uint32_t>& range_mm,
+                          std::span<const int> pixel_shift_by_row,
+                          std::span<Eigen::Vector3d> out) const;
   /// Direction scaled to metres per millimetre of range, and offset in metres, of a staggered
   /// pixel.
   [[nodiscard]] const Eigen::Vector3d& direction(int row, int column) const;

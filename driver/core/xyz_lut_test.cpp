@@ -48,6 +48,33 @@ TEST(XyzLut, NoReturnGivesNoPoint) {
   EXPECT_TRUE(XyzLut(plain_sensor()).point(0, 7, 0).isZero(0.0));
 }
 
+TEST(XyzLut, PointsOfAScanAreThoseOfItsPixelsDestaggered) {
+  SensorInfo info = test::make_sensor(LidarProfile::kLegacy, 6, 128);
+  info.pixel_shift_by_row = {0, 5, -7, 127, 130, -300};
+  const XyzLut lut(info);
+  std::mt19937 random(4);
+  LidarScan scan = test::random_scan(info, 0, random);
+  for (std::size_t i = 0; i < scan.range_mm.data.size(); i += 3) scan.range_mm.data[i] = 0;
+
+  std::vector<Eigen::Vector3d> points(scan.range_mm.data.size(), Eigen::Vector3d::Constant(7.0));
+  lut.destaggered_points(scan.range_mm, info.pixel_shift_by_row, points);
+
+  Image<double> staggered_x(6, 128);
+  Image<double> x(6, 128);
+  for (int r = 0; r < 6; ++r) {
+    for (int m = 0; m < 128; ++m) staggered_x(r, m) = lut.point(r, m, scan.range_mm(r, m)).x();
+  }
+  destagger(staggered_x, info.pixel_shift_by_row, x);
+  for (int r = 0; r < 6; ++r) {
+    for (int c = 0; c < 128; ++c) {
+      const Eigen::Vector3d& point = points[x.index(r, c)];
+      const int m = staggered_column(c, info.pixel_shift_by_row[static_cast<std::size_t>(r)], 128);
+      EXPECT_EQ(point, lut.point(r, m, scan.range_mm(r, m))) << r << ", " << c;
+      EXPECT_EQ(point.x(), x(r, c));
+    }
+  }
+}
+
 TEST(Destagger, RowsAreRotatedByTheirShift) {
   Image<std::uint16_t> in(3, 4);
   for (std::size_t i = 0; i < in.data.size(); ++i) in.data[i] = static_cast<std::uint16_t>(i);

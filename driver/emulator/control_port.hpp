@@ -54,7 +54,7 @@ class ControlPort {
  private:
   void accept() {
     acceptor_.async_accept(
-        [this, alive = std::weak_ptr<int>(alive_)](boost::system::error_code error,
+        [this, alive = std::weak_ptr<int>{alive_}](boost::system::error_code error,
                                                    boost::asio::ip::tcp::socket socket) {
           if (alive.expired() || error == boost::asio::error::operation_aborted ||
               !acceptor_.is_open()) {

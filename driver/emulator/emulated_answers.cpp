@@ -4,6 +4,7 @@
 // What an emulated sensor answers, by path and by command.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 
 #include "driver/core/error.hpp"
@@ -19,6 +20,10 @@ using nlohmann::json;
 EmulatedAnswer ok(const json& value) { return {200, value.dump()}; }
 EmulatedAnswer bad_request(const std::string& why) { return {400, json{{"error", why}}.dump()}; }
 EmulatedAnswer not_found() { return {404, json{{"error", "not found"}}.dump()}; }
+
+bool is_ascii(const std::string& text) {
+  return std::ranges::all_of(text, [](unsigned char c) { return c < 0x80; });
+}
 
 int hex_digit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
@@ -124,7 +129,7 @@ EmulatedAnswer EmulatedSensor::answer_sensor(const EmulatedRequest& request, con
                {"input_current_ma", 700},
                {"internal_temperature_deg_c", 45},
                {"phase_lock_status", "DISABLED"},
-               {"timestamp_ns", clock_.monotonic_ns() + clock_offset_ns_}});
+               {"timestamp_ns", sensor_time_ns()}});
   }
   const bool commands = form_ == ApiForm::kCommandGroups || form_ == ApiForm::kCommands;
   if (commands && path->starts_with("cmd/")) return answer_command(query, request.client_address);
@@ -219,6 +224,8 @@ std::string EmulatedSensor::answer_line(std::string_view line, const std::string
 }
 
 json EmulatedSensor::run_command(const std::vector<std::string>& words, const std::string& client) {
+  // Anything else need not be text that an answer can repeat.
+  if (!std::ranges::all_of(words, is_ascii)) throw InputError("a command must be in ASCII");
   const std::string& name = words.front();
   if (name == "get_alerts") return alerts();
   if (name == "get_time_info") return {{"sensor", sensor_time()}};

@@ -16,11 +16,17 @@ namespace {
 
 using nlohmann::json;
 
-/// Metadata in its grouped form.
-json grouped(const std::string& text) {
+/// Metadata in its grouped form, with other settings.
+json grouped(const EmulatedSensorOptions& options) {
+  const std::string& text = options.metadata_json;
   const SensorInfo info = parse_sensor_info(text, "of the emulated sensor");
   json root = json::parse(text);
-  return member(root, "sensor_info").is_object() ? root : json::parse(to_metadata_json(info));
+  if (!member(root, "sensor_info").is_object()) root = json::parse(to_metadata_json(info));
+  if (!options.config_changes.is_object()) return root;
+  json& config = root["config_params"];
+  if (!config.is_object()) config = json::object();
+  config.update(options.config_changes);
+  return root;
 }
 
 std::string firmware_of(const EmulatedSensorOptions& options, const json& metadata) {
@@ -38,11 +44,12 @@ EmulatedSensor::EmulatedSensor(EmulatedSensorOptions options, Clock clock,
     : options_(std::move(options)),
       clock_(clock),
       on_stream_(std::move(on_stream)),
-      base_metadata_(grouped(options_.metadata_json)),
+      base_metadata_(grouped(options_)),
       firmware_(firmware_of(options_, base_metadata_)),
       form_(api_form(*parse_firmware_version(firmware_))),
       config_(*parse_firmware_version(firmware_), member(base_metadata_, "config_params")),
-      init_id_(options_.first_init_id) {}
+      init_id_(options_.first_init_id),
+      powered_at_ns_(clock_.monotonic_ns()) {}
 
 void EmulatedSensor::power_off() {
   powered_ = false;
@@ -55,6 +62,7 @@ void EmulatedSensor::power_on() {
   config_.restore_persisted();
   clear_alerts();
   clock_offset_ns_ = 0;
+  powered_at_ns_ = clock_.monotonic_ns();
   start(options_.boot_ns);
 }
 
@@ -93,6 +101,8 @@ EmulatedStream EmulatedSensor::stream() const {
   stream.imu_port = active.value("udp_port_imu", 0);
   stream.init_id = init_id_;
   stream.timestamp_mode = text_member(active, "timestamp_mode");
+  const bool ptp = stream.timestamp_mode == "TIME_FROM_PTP_1588";
+  stream.clock_zero_ns = ptp ? -options_.ptp_minus_monotonic_ns : powered_at_ns_;
   stream.clock_offset_ns = clock_offset_ns_;
   return stream;
 }
@@ -145,11 +155,14 @@ json EmulatedSensor::alerts() const {
   return {{"active", active_alerts_}, {"log", alert_log_}, {"next_cursor", alert_log_.size()}};
 }
 
+std::int64_t EmulatedSensor::sensor_time_ns() const {
+  return stream().sensor_time_ns(clock_.monotonic_ns());
+}
+
 json EmulatedSensor::sensor_time() const {
-  const std::int64_t time_ns = clock_.monotonic_ns() + clock_offset_ns_;
   return {{"timestamp",
            {{"mode", config_.active().value("timestamp_mode", "")},
-            {"time", static_cast<double>(time_ns) * kSecondsPerNs}}},
+            {"time", static_cast<double>(sensor_time_ns()) * kSecondsPerNs}}},
           {"sync_pulse_in", {{"locked", 0}}}};
 }
 

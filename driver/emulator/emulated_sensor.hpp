@@ -17,11 +17,14 @@
 namespace glint::emulator {
 
 struct EmulatedSensorOptions {
-  std::string metadata_json;  ///< What it says of itself, in either form.
-  std::string firmware;       ///< "v3.1.0"; decides its interface. Empty: that of the metadata.
+  std::string metadata_json;      ///< What it says of itself, in either form.
+  std::string firmware;           ///< "v3.1.0"; decides its interface. Empty: that of the metadata.
+  nlohmann::json config_changes;  ///< To the metadata's settings; keys as of firmware 2 and later.
   std::int64_t reinitialise_ns = 1'000'000'000;
   std::int64_t boot_ns = 2'000'000'000;
   std::uint32_t first_init_id = 0x5EED01;  ///< Each start has the next.
+  /// Its PTP master's clock less the monotonic clock; TAI if the master is a good one.
+  std::int64_t ptp_minus_monotonic_ns = 0;
 };
 
 /// What the sensor sends over UDP just now. Value type.
@@ -32,7 +35,13 @@ struct EmulatedStream {
   int imu_port = 0;
   std::uint32_t init_id = 0;
   std::string timestamp_mode;
+  std::int64_t clock_zero_ns = 0;    ///< Monotonic time at which its clock began, at 0.
   std::int64_t clock_offset_ns = 0;  ///< Sum of the clock's jumps.
+
+  /// What its clock shows.
+  [[nodiscard]] std::int64_t sensor_time_ns(std::int64_t monotonic_ns) const {
+    return monotonic_ns - clock_zero_ns + clock_offset_ns;
+  }
 
   friend bool operator==(const EmulatedStream&, const EmulatedStream&) = default;
 };
@@ -103,6 +112,7 @@ class EmulatedSensor {
   void save_flash(const nlohmann::json& changes);
   void start(std::int64_t duration_ns);
   [[nodiscard]] bool initialising() const;
+  [[nodiscard]] std::int64_t sensor_time_ns() const;
   [[nodiscard]] nlohmann::json sensor_info() const;
   [[nodiscard]] nlohmann::json metadata() const;
   [[nodiscard]] nlohmann::json alerts() const;
@@ -122,6 +132,7 @@ class EmulatedSensor {
   bool powered_ = true;
   std::int64_t ready_at_ns_ = 0;
   std::uint32_t init_id_;
+  std::int64_t powered_at_ns_;
   std::int64_t clock_offset_ns_ = 0;
 };
 

@@ -123,6 +123,15 @@ TEST_F(EmulatedSensorTest, TheTextCommandsKnowTheOldNames) {
   EXPECT_THAT(sensor_->answer_line("", ""), testing::StartsWith("error"));
 }
 
+// Such bytes cannot stand in a JSON answer that repeats them.
+TEST_F(EmulatedSensorTest, BytesThatAreNoTextAreRefused) {
+  start("v2.5.0");
+  const std::string path = "/api/v1/sensor/cmd/set_config_param?args=";
+  EXPECT_EQ(request("GET", path + "udp_port_lidar+7\x99").status, 400);
+  EXPECT_EQ(request("GET", path + "%C3%28+7").status, 400);
+  EXPECT_THAT(sensor_->answer_line("\xFF", ""), testing::StartsWith("error"));
+}
+
 TEST_F(EmulatedSensorTest, ItsMetadataIsReadByTheDriver) {
   start("v3.1.0");
   const SensorInfo info =

@@ -16,8 +16,8 @@ std::int64_t to_ns(double seconds) { return std::llround(seconds / kSecondsPerNs
 }  // namespace
 
 ScenarioPlayer::ScenarioPlayer(Scenario scenario, SensorEmulator& emulator,
-                               PacketFaultSink& packets)
-    : events_(std::move(scenario)), emulator_(emulator), packets_(packets) {}
+                               PacketFaultSink& packets, const PacketFaults& faults)
+    : events_(std::move(scenario)), emulator_(emulator), packets_(packets), faults_(faults) {}
 
 std::optional<std::int64_t> ScenarioPlayer::play(std::int64_t elapsed_ns) {
   while (!events_.empty()) {

@@ -31,8 +31,9 @@ class PacketFaultSink {
 /// Lets the events of a scenario happen when their time has come. Thread-compatible.
 class ScenarioPlayer {
  public:
-  /// Both must outlive the player.
-  ScenarioPlayer(Scenario scenario, SensorEmulator& emulator, PacketFaultSink& packets);
+  /// Both must outlive the player. `faults` are those that the network has already.
+  ScenarioPlayer(Scenario scenario, SensorEmulator& emulator, PacketFaultSink& packets,
+                 const PacketFaults& faults = {});
 
   /// Lets everything happen that is due so long after the start, in the order of its times. Returns
   /// when the next event is due; null when there is none.

@@ -91,5 +91,10 @@ TEST(ScenarioTest, HappensWhenItsTimeHasComeAndRepeats) {
   EXPECT_EQ(stream.clock_offset_ns, 3 * kNsPerSecond);
 }
 
+TEST(ScenarioTest, TheShippedExampleIsRead) {
+  const Scenario scenario = load_scenario(GLINT_SOURCE_DIR "/config/bad-day.scenario.toml");
+  EXPECT_GE(scenario.size(), 10U);
+}
+
 }  // namespace
 }  // namespace glint::emulator

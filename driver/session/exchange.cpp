@@ -141,6 +141,8 @@ class Connection : public Exchange, public std::enable_shared_from_this<Connecti
     error_code ignored;
     const tcp::endpoint local = socket_.local_endpoint(ignored);
     if (!ignored) reply_.local_address = without_scope(local.address()).to_string();
+    const tcp::endpoint peer = socket_.remote_endpoint(ignored);
+    if (!ignored) reply_.peer_address = without_scope(peer.address()).to_string();
     talk();
   }
 

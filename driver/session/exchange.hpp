@@ -26,6 +26,7 @@ struct ExchangeReply {
   int status = 0;             ///< HTTP status; 0 of a line.
   std::string body;           ///< Of any kind, at most kMaxReplyBytes.
   std::string local_address;  ///< This machine's end of the connection.
+  std::string peer_address;   ///< The other end.
   std::string failure;        ///< One sentence; empty when there is an answer, whatever it says.
 };
 

@@ -15,9 +15,11 @@ class EchoClient final : public SensorClient {
  public:
   explicit EchoClient(nlohmann::json value) : value_(std::move(value)) {}
 
-  void read(SensorResource, Handler handler) override { handler({value_, {}, false, "10.0.0.1"}); }
+  void read(SensorResource, Handler handler) override {
+    handler({value_, {}, false, "10.0.0.1", "10.0.0.2"});
+  }
   void write_config(const nlohmann::json&, bool, Handler handler) override {
-    handler({value_, {}, false, "10.0.0.1"});
+    handler({value_, {}, false, "10.0.0.1", "10.0.0.2"});
   }
   void cancel() override {}
 

@@ -155,6 +155,7 @@ void NetworkSensorClient::run(std::vector<SensorRequest> requests,
 void NetworkSensorClient::ask_next(const std::shared_ptr<Series>& series) {
   if (series->next == series->requests.size()) {
     series->reply.local_address = local_address_;
+    series->reply.sensor_address = sensor_address_;
     series->handler(std::move(series->reply));
     return;
   }
@@ -198,6 +199,7 @@ void NetworkSensorClient::exchange(const SensorRequest& request, std::chrono::mi
                                exchange_.reset();
                                if (!answer.local_address.empty()) {
                                  local_address_ = answer.local_address;
+                                 sensor_address_ = answer.peer_address;
                                }
                                answered(answer);
                              });

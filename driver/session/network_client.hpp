@@ -56,6 +56,7 @@ class NetworkSensorClient final : public SensorClient {
   const ClientTimeouts timeouts_;
   std::optional<ApiForm> form_;
   std::string local_address_;
+  std::string sensor_address_;
   std::shared_ptr<Exchange> exchange_;  ///< The one under way.
 };
 

@@ -25,8 +25,9 @@ struct SensorReply {
   nlohmann::json value;  ///< Of a read. Untrusted: may be of any type.
   /// One sentence that names the host, what was asked and the way out; empty when all went well.
   std::string failure;
-  bool unsupported = false;   ///< This firmware has no such thing.
-  std::string local_address;  ///< Of this machine, as the sensor sees it; may be empty.
+  bool unsupported = false;    ///< This firmware has no such thing.
+  std::string local_address;   ///< Of this machine, as the sensor sees it; may be empty.
+  std::string sensor_address;  ///< Of the sensor, an IP address; may be empty.
 };
 
 /// How a sensor is talked to. Each call answers exactly once, within a bounded time, unless it is

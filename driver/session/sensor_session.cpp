@@ -20,7 +20,8 @@ SensorSession::SensorSession(SensorClient& client, SessionOptions options,
       options_(std::move(options)),
       activity_(std::move(activity)),
       listener_(std::move(listener)),
-      retry_ns_(options_.times.first_retry_ns) {
+      retry_ns_(options_.times.first_retry_ns),
+      stall_ns_(options_.times.stall_ns) {
   if (options_.wanted) check(*options_.wanted);
   status_.host = options_.host;
 }
@@ -32,6 +33,7 @@ SensorSession::~SensorSession() {
 
 std::int64_t SensorSession::step(std::int64_t now_ns) {
   now_ns_ = now_ns;
+  if (status_.state_since_ns == 0) status_.state_since_ns = now_ns;
   if (expects_packets()) watch_packets();
   while (true) {
     if (asked_ && reply_->has_value()) {
@@ -130,6 +132,9 @@ void SensorSession::take_config(const SensorReply& reply) {
   }
   active_config_ = reply.value;
   local_address_ = reply.local_address;
+  status_.address = reply.sensor_address;
+  const bool renamed = !active_config_.contains("udp_dest");
+  status_.udp_dest = excerpt(text_member(active_config_, renamed ? "udp_ip" : "udp_dest"), 60);
   const json wanted =
       options_.wanted ? to_sensor_json(*options_.wanted, firmware_) : json::object();
   ConfigPlan plan = plan_changes(wanted, active_config_, local_address_);
@@ -238,7 +243,7 @@ void SensorSession::watch_packets() {
 
 void SensorSession::watch_flow(std::int64_t last_packet_ns) {
   const std::int64_t silence_ns = now_ns_ - last_packet_ns;
-  if (silence_ns <= options_.times.stall_ns) return;
+  if (silence_ns <= stall_ns_) return;
   enter(SessionState::kStalled, fmt::format("no packet of {} for {:.3g} s", status_.host,
                                             static_cast<double>(silence_ns) * kSecondsPerNs));
   drop_question();

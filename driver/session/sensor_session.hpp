@@ -72,6 +72,9 @@ class SensorSession {
   /// Called when the client has answered, from within its handler: step() has something to do.
   void set_wake(std::function<void()> wake) { wake_ = std::move(wake); }
 
+  /// Silence that is a stall from here on: it depends on the sensor's rate.
+  void set_stall_ns(std::int64_t stall_ns) { stall_ns_ = stall_ns; }
+
   [[nodiscard]] const SessionStatus& status() const { return status_; }
 
  private:
@@ -124,6 +127,7 @@ class SensorSession {
   SessionState failed_in_ = SessionState::kDiscovering;
   std::int64_t now_ns_ = 0;
   std::int64_t retry_ns_;
+  std::int64_t stall_ns_;
 
   Task task_ = Task::kIdentify;
   std::int64_t due_ns_ = 0;

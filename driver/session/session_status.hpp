@@ -39,6 +39,8 @@ struct SessionStatus {
   std::string serial_number;
   std::string firmware;
   std::string sensor_status;  ///< "RUNNING", "STANDBY", "ERROR", ...
+  std::string address;        ///< IP address that the host has been reached at.
+  std::string udp_dest;       ///< Where it sends its packets.
   std::uint32_t init_id = 0;
 
   std::uint64_t restarts = 0;             ///< Of the sensor, seen in this session.

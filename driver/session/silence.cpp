@@ -30,8 +30,7 @@ std::string why_no_packets(const SessionStatus& status, const nlohmann::json& ac
     return fmt::format("{} reports the error {} {} ({}); restart it", host, alert.id,
                        alert.category, alert.message);
   }
-  const bool renamed = !active_config.contains("udp_dest");
-  const std::string dest = excerpt(text_member(active_config, renamed ? "udp_ip" : "udp_dest"), 60);
+  const std::string& dest = status.udp_dest;
   const std::int64_t port = integer_member(active_config, "udp_port_lidar").value_or(0);
   for (const SensorAlert& alert : status.health.alerts) {
     if (alert.id != kLidarUnreachableAlert && alert.id != kImuUnreachableAlert) continue;

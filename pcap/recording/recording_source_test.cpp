@@ -165,6 +165,13 @@ TEST_F(RecordingSourceTest, MetadataOfAnotherSensorIsRefused) {
               AllOf(HasSubstr("sensor 999"), HasSubstr("sensor 122")));
 }
 
+TEST_F(RecordingSourceTest, MetadataOfAnotherStartIsRefused) {
+  SensorInfo info = make_sensor(LidarProfile::kRng19Rfl8Sig16Nir16, "999");
+  add_scan(info, "/ouster/");
+  info.init_id = 99;
+  EXPECT_THAT(complaint(info), AllOf(HasSubstr("id 7109750"), HasSubstr("the metadata has 99")));
+}
+
 TEST_F(RecordingSourceTest, PacedPacketsWaitUntilTheyAreDueAndStopEndsReading) {
   const SensorInfo info = make_sensor(LidarProfile::kLegacy, "");
   add_scan(info, "/ouster/");

@@ -25,12 +25,18 @@ constexpr std::uint64_t kSurveyPackets = 4096;
 
 using FlowKey = std::tuple<std::string, std::string, std::size_t, std::uint64_t>;
 
-std::vector<TopicFlow> sorted_flows(const std::map<FlowKey, std::uint64_t>& counts) {
+struct FlowTally {
+  std::uint64_t messages = 0;
+  PacketEvidence evidence;
+};
+using FlowTallies = std::map<FlowKey, FlowTally>;
+
+std::vector<TopicFlow> sorted_flows(const FlowTallies& tallies) {
   std::vector<TopicFlow> flows;
-  flows.reserve(counts.size());
-  for (const auto& [key, count] : counts) {
-    flows.push_back(
-        {std::get<0>(key), std::get<1>(key), std::get<2>(key), std::get<3>(key), count});
+  flows.reserve(tallies.size());
+  for (const auto& [key, tally] : tallies) {
+    flows.push_back({std::get<0>(key), std::get<1>(key), std::get<2>(key), std::get<3>(key),
+                     tally.messages, tally.evidence});
   }
   std::ranges::stable_sort(flows, std::ranges::greater{}, &TopicFlow::messages);
   return flows;
@@ -121,28 +127,33 @@ TopicSurvey survey_topics(const std::filesystem::path& file, const PacketFormat*
   const std::unique_ptr<MessageReader> reader = open_messages(file);
   MessageDecoder decoder;
   TopicSurvey survey;
-  std::map<FlowKey, std::uint64_t> counts;
+  FlowTallies tallies;
   std::uint64_t packets_since_first = 0;
   Message message;
   while (packets_since_first <= kSurveyPackets && reader->next(message)) {
     FlowKey key{message.topic, message.type, 0, 0};
+    std::optional<PacketView> view;
     if (is_packet_type(message.type)) {
       const ByteSpan packet = decoder.packet(message).value_or(ByteSpan());
       std::get<2>(key) = packet.size();
       const bool expected = format != nullptr && has_size(packet.size(), format->packet_bytes);
       if (expected) {
-        const auto view = PacketView::parse(*format, packet.first(format->packet_bytes));
+        view = PacketView::parse(*format, packet.first(format->packet_bytes));
         if (view) std::get<3>(key) = view->serial_number();
       }
       if (expected || packets_since_first > 0) ++packets_since_first;
     } else if (survey.metadata.size() < kMaxMetadata) {
       add_metadata(message, decoder, survey.metadata);
     }
-    if (counts.size() < kMaxFlows || counts.contains(key)) ++counts[key];
+    if (tallies.size() < kMaxFlows || tallies.contains(key)) {
+      FlowTally& tally = tallies[key];
+      ++tally.messages;
+      if (view) tally.evidence.add(*view);
+    }
     if (survey.messages++ == 0) survey.first_time = message.host_time;
     survey.last_time = message.host_time;
   }
-  survey.flows = sorted_flows(counts);
+  survey.flows = sorted_flows(tallies);
   survey.problem = reader->problem();
   return survey;
 }
@@ -158,17 +169,16 @@ SensorTopics find_sensor_topics(const TopicSurvey& survey, const std::filesystem
 
   SensorTopics found;
   found.serial = expected_serial(info, format);
-  const std::uint64_t other = flows.front().serial;
-  std::erase_if(flows, [&](const TopicFlow& flow) {
+  const auto is_other = [&](const TopicFlow& flow) {
     return found.serial != 0 && flow.serial != 0 && flow.serial != found.serial;
-  });
-  if (flows.empty()) {
-    throw MetadataError(fmt::format(
-        "The lidar packets in {} come from sensor {}, but the metadata is that of sensor {}; give "
-        "the metadata recorded with this recording with --meta.",
-        file.string(), other, found.serial));
-  }
-  found.lidar = best_flow(flows, namespace_with_metadata(survey, info)).topic;
+  };
+  // If all are, they contradict the metadata.
+  if (!std::ranges::all_of(flows, is_other)) std::erase_if(flows, is_other);
+  const TopicFlow& best = best_flow(flows, namespace_with_metadata(survey, info));
+  const std::string contradiction = metadata_contradiction(
+      info, best.evidence, fmt::format("The lidar packets in {}", file.string()));
+  if (!contradiction.empty()) throw MetadataError(contradiction);
+  found.lidar = best.topic;
   for (const TopicFlow& flow : flows) {
     if (flow.topic == found.lidar) continue;
     found.notices.push_back(

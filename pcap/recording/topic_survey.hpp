@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "driver/core/metadata_check.hpp"
 #include "driver/core/packet_format.hpp"
 #include "driver/core/sensor_info.hpp"
 #include "driver/core/time.hpp"
@@ -23,6 +24,7 @@ struct TopicFlow {
   std::size_t bytes = 0;     ///< Of the packet in each; 0 if the type carries none.
   std::uint64_t serial = 0;  ///< The sensor's, by the packet header; 0 where it cannot be told.
   std::uint64_t messages = 0;
+  PacketEvidence evidence;  ///< Of packets of the size that was looked for.
 };
 
 /// What there is in a recording.
@@ -50,7 +52,8 @@ struct SensorTopics {
 /// Finds the sensor's topics: that with packets of its size (and serial number where they carry
 /// one), and that of IMU packets in the same namespace.
 /// @param prefix Only topics that begin with it; empty: all.
-/// @throws InputError if there is none; the sentence says what was seen instead.
+/// @throws InputError if there is none, the sentence says what was seen instead; MetadataError if
+/// the packets contradict the metadata.
 SensorTopics find_sensor_topics(const TopicSurvey& survey, const std::filesystem::path& file,
                                 const SensorInfo& info, const PacketFormat& format,
                                 std::string_view prefix);

@@ -79,9 +79,47 @@ TEST(FaultyNetwork, LateMeansOneToThreeLate) {
   EXPECT_NEAR(all, static_cast<double>(counts.delayed), 20.0);
 }
 
+TEST(FaultyNetwork, NoneIsPassedByMoreThanThree) {
+  FaultCounts counts;
+  const auto order = arrivals({.duplicates = 0.1, .reordering = 0.3}, counts);
+  std::vector<std::size_t> first_at(kDatagrams, order.size());
+  for (std::size_t i = order.size(); i-- > 0;) first_at[static_cast<std::size_t>(order[i])] = i;
+  for (std::size_t number = 0; number + 20 < first_at.size(); ++number) {
+    int passed_by = 0;
+    for (std::size_t later = number + 1; later < number + 20; ++later) {
+      if (first_at[later] < first_at[number]) ++passed_by;
+    }
+    ASSERT_LE(passed_by, 3) << number;
+  }
+}
+
+TEST(FaultyNetwork, FaultsChangeWhenToldAndTheObserverSeesEachFate) {
+  FaultyNetwork network({}, 5);
+  std::map<DatagramFate, int> fates;
+  network.set_observer([&](const RawPacket&, DatagramFate fate) { ++fates[fate]; });
+  int left = 1000;
+  const auto send = [&](RawPacket& packet) {
+    packet.host_time = {5};
+    return left-- > 0 ? SourceStatus::kPacket : SourceStatus::kEnd;
+  };
+  RawPacket packet;
+  for (int i = 0; i < 500; ++i) ASSERT_EQ(network.receive(send, packet), SourceStatus::kPacket);
+  EXPECT_EQ(fates[DatagramFate::kArrives], 500);
+  network.set_faults({.loss = 0.5, .delay_ns = 70});
+  int arrived = 0;
+  for (; network.receive(send, packet) == SourceStatus::kPacket; ++arrived) {
+    ASSERT_EQ(packet.host_time.ns, 75);
+  }
+  EXPECT_NEAR(arrived, 250, 60);
+  EXPECT_EQ(fates[DatagramFate::kLost], 500 - arrived);
+  EXPECT_EQ(network.counts().lost, static_cast<std::uint64_t>(500 - arrived));
+}
+
 TEST(FaultyNetwork, SharesThatAreNoneAreRefused) {
   EXPECT_THROW(FaultyNetwork({.loss = 1.0}, 1), OptionError);
   EXPECT_THROW(FaultyNetwork({.duplicates = -0.1}, 1), OptionError);
+  FaultyNetwork network({}, 1);
+  EXPECT_THROW(network.set_faults({.delay_ns = -1}), OptionError);
 }
 
 }  // namespace

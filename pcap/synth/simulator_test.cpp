@@ -105,7 +105,7 @@ TEST_P(DecodedPoints, LieOnTheSurfacesOfTheWorldWithinTheNoise) {
   int scans = 0;
   while (source.read(packet) == SourceStatus::kPacket) {
     if (packet.port != simulator.info().lidar_port) continue;
-    ASSERT_EQ(assembler.push(packet.bytes), PacketError::kNone);
+    ASSERT_EQ(assembler.push(packet.bytes), PacketVerdict::kLidar);
     while (const LidarScan* scan = assembler.next()) {
       ++scans;
       EXPECT_EQ(scan->completeness(), 1.0);

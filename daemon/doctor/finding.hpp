@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace glint::daemon {
+
+enum class FindingLevel { kOk, kWarn, kFail };
+
+/// "OK", "WARN", "FAIL".
+std::string_view to_string(FindingLevel level);
+
+/// What a look at one thing showed. Value type.
+struct Finding {
+  FindingLevel level = FindingLevel::kOk;
+  std::string step;  ///< What was looked at: "route", "ports", ...
+  std::string what;  ///< One sentence.
+  std::string mend;  ///< The line that mends it: a command or a setting; empty when it is OK.
+};
+
+using Findings = std::vector<Finding>;
+
+/// The first that fails, in the order of the way from the sensor to the program; null for none.
+const Finding* first_failure(std::span<const Finding> findings);
+
+}  // namespace glint::daemon
