@@ -50,6 +50,9 @@ struct SlamConfig {
   /// Scans bridged by constant velocity (state DEGRADED) before the state is LOST.
   int max_coasted_scans = 3;
 
+  /// Keypoints of the intensity image are matched from scan to scan. Off: surfaces alone, the
+  /// baseline that intensity is measured against.
+  bool intensity = true;
   /// Elements of the map optimisation, each of which may be switched off: surfaces against the
   /// local map, the ground apart from other surfaces, keypoints against the last scans.
   bool planes = true;

@@ -53,18 +53,19 @@ MapOptimizer::MapOptimizer(const SensorInfo& info, const SlamConfig& config,
       map_(map_options(config)),
       window_(window_options(config)) {}
 
-MapOptimization MapOptimizer::optimize(const LidarScan& scan, const ScanImages& images,
-                                       const Features& features, const std::vector<Match>& matches,
-                                       const Pose& start, const ConstantVelocity* motion) {
-  MapOptimization outcome;
+void MapOptimizer::observe(const LidarScan& scan, const ScanImages& images,
+                           const ConstantVelocity* motion, const Eigen::Vector3d& up) {
   points_m_.clear();
-  if (config_.planes) points_m_ = extractor_.extract(scan, images, motion);
   ground_count_ = 0;
-  if (config_.planes && config_.ground) {
-    const Eigen::Vector3d up = start.rotation.conjugate() * Eigen::Vector3d::UnitZ();
-    outcome.ground = ground_finder_.find(points_m_, up, &ground_count_);
-  }
+  ground_plane_.reset();
+  if (!config_.planes) return;
+  points_m_ = extractor_.extract(scan, images, motion);
+  if (config_.ground) ground_plane_ = ground_finder_.find(points_m_, up, &ground_count_);
+}
 
+MapOptimization MapOptimizer::optimize(const Features& features, const std::vector<Match>& matches,
+                                       const Pose& start) {
+  MapOptimization outcome;
   Pose pose = start;
   JointResult result;
   for (int round = 0; round < config_.map_rounds; ++round) {

@@ -31,7 +31,6 @@ struct MapOptimization {
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Identity();
   int plane_terms = 0;
   int point_terms = 0;
-  std::optional<GroundPlane> ground;
 };
 
 /// Corrects the odometry's drift: the scan's surfaces against those of the local map, and its
@@ -41,18 +40,23 @@ class MapOptimizer {
  public:
   MapOptimizer(const SensorInfo& info, const SlamConfig& config, std::shared_ptr<const XyzLut> lut);
 
-  /// The pose of a scan that odometry places at `start`. `motion` moves its points to one instant;
-  /// null: it is taken as rigid.
-  MapOptimization optimize(const LidarScan& scan, const ScanImages& images,
-                           const Features& features, const std::vector<Match>& matches,
-                           const Pose& start, const ConstantVelocity* motion);
-  /// Takes the scan that was optimised last into map and window, at its final pose.
+  /// Takes a scan's surfaces and parts the ground from them. `motion` moves its points to one
+  /// instant; null: it is taken as rigid. `up` is in the scan frame.
+  void observe(const LidarScan& scan, const ScanImages& images, const ConstantVelocity* motion,
+               const Eigen::Vector3d& up);
+  /// The pose of the observed scan, which odometry places at `start`; `matches` are the keypoints
+  /// that odometry could match, none if it could not.
+  MapOptimization optimize(const Features& features, const std::vector<Match>& matches,
+                           const Pose& start);
+  /// Takes the observed scan into map and window, at its final pose.
   void remember(const Features& features, const std::vector<Match>& matches,
                 const Pose& T_odom_scan);
   /// Forgets map and window.
   void reset();
 
   [[nodiscard]] LocalMap& map() { return map_; }
+  /// The ground of the observed scan, if it shows any.
+  [[nodiscard]] const std::optional<GroundPlane>& ground() const { return ground_plane_; }
 
  private:
   void associate(const Features& features, const std::vector<Match>& matches, const Pose& pose);
@@ -66,6 +70,7 @@ class MapOptimizer {
 
   std::vector<Eigen::Vector3f> points_m_;  ///< Of the scan; those on the ground first.
   std::size_t ground_count_ = 0;
+  std::optional<GroundPlane> ground_plane_;
   std::vector<PlaneTerm> planes_;
   std::vector<PointTerm> points_;
 };
