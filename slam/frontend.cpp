@@ -23,8 +23,11 @@ namespace {
 constexpr int kRestartScans = 3;
 // A scan with fewer keypoints cannot serve as a reference.
 constexpr std::size_t kFewestKeypoints = 20;
-// With fewer the surfaces alone do not give a pose.
+// The surfaces alone give a pose when so many of them, and this share of them, lie where the map
+// has them, this close. Held against another room, some two thirds do, 0.09 m off.
 constexpr int kFewestPlanes = 100;
+constexpr double kLeastOverlap = 0.5;
+constexpr double kLargestRms_m = 0.06;
 // Longest step over which the motion of the last scan still predicts the next one, s.
 constexpr double kLongestPrediction_s = 0.5;
 // What a coasted scan adds to the covariance: metres and radians of unknown acceleration.
@@ -45,6 +48,11 @@ Matrix6 compose_covariance(const Matrix6& base, const Pose& b, const Matrix6& in
   adjoint.topRightCorner<3, 3>() = skew * r;
   adjoint.bottomRightCorner<3, 3>() = r;
   return adjoint * base * adjoint.transpose() + increment;
+}
+
+bool convincing(const MapOptimization& result) {
+  return result.plane_terms >= kFewestPlanes && result.overlap > kLeastOverlap &&
+         result.plane_rms_m < kLargestRms_m;
 }
 
 // A scan that later ones are registered with.
@@ -289,7 +297,7 @@ bool Frontend::Impl::correct_by_map(const LidarScan& scan, bool registered, Regi
       scan, predictable ? Twist(se3_log(motion.T_reference_current) / dt_s) : Twist::Zero(), start);
   if (!registered) matches.clear();
   const MapOptimization result = optimizer->optimize(current, matches, start);
-  if (!result.ok || (!registered && result.plane_terms < kFewestPlanes)) return registered;
+  if (!result.ok || !(registered || convincing(result))) return registered;
   Registration corrected = motion;
   corrected.ok = true;
   corrected.T_reference_current = reference.T_odom_scan.inverse() * result.T_odom_scan;

@@ -17,6 +17,9 @@ constexpr double kLeastHeight_m = 0.15;
 constexpr double kHeightGain = 0.1;
 // The ground need not be level: with the distance it may rise and fall by so much.
 constexpr double kSlope = 0.1;
+// A slice so many inlier distances above the ground has far fewer points.
+constexpr double kSliceAbove = 3.0;
+constexpr int kLeastContrast = 3;
 
 double distance(const GroundPlane& plane, const Eigen::Vector3d& point) {
   return plane.normal.dot(point) + plane.height_m;
@@ -32,8 +35,7 @@ std::optional<GroundPlane> GroundFinder::find(std::span<Eigen::Vector3f> points_
   collect_candidates(points_m, up);
   std::optional<GroundPlane> plane = sample_planes(up);
   if (plane) plane = refine(*plane);
-  const bool level = plane && plane->normal.dot(up) > std::cos(options_.largest_tilt_rad);
-  if (!level) return std::nullopt;
+  if (!plane || !plausible(*plane, up)) return std::nullopt;
   height_m_ =
       height_m_ ? *height_m_ + kHeightGain * (plane->height_m - *height_m_) : plane->height_m;
   const auto others = std::ranges::stable_partition(points_m, [&](const Eigen::Vector3f& p) {
@@ -41,6 +43,11 @@ std::optional<GroundPlane> GroundFinder::find(std::span<Eigen::Vector3f> points_
   });
   *ground_count = points_m.size() - others.size();
   return plane;
+}
+
+bool GroundFinder::plausible(const GroundPlane& plane, const Eigen::Vector3d& up) const {
+  if (plane.normal.dot(up) < std::cos(options_.largest_tilt_rad)) return false;
+  return !height_m_ || std::abs(plane.height_m - *height_m_) < options_.height_band_m;
 }
 
 void GroundFinder::collect_candidates(std::span<const Eigen::Vector3f> points_m,
@@ -66,7 +73,6 @@ void GroundFinder::collect_candidates(std::span<const Eigen::Vector3f> points_m,
 std::optional<GroundPlane> GroundFinder::sample_planes(const Eigen::Vector3d& up) {
   const auto size = static_cast<std::uint32_t>(candidates_.size());
   if (static_cast<int>(size) < options_.fewest_inliers) return std::nullopt;
-  const double least_cosine = std::cos(options_.largest_tilt_rad);
   std::mt19937 random(4711);  // The same samples each time: results repeat bit for bit.
   std::optional<GroundPlane> best;
   for (int i = 0; i < options_.hypotheses; ++i) {
@@ -77,13 +83,20 @@ std::optional<GroundPlane> GroundFinder::sample_planes(const Eigen::Vector3d& up
     GroundPlane plane;
     plane.normal = cross.normalized();
     if (plane.normal.dot(up) < 0) plane.normal = -plane.normal;
-    if (plane.normal.dot(up) < least_cosine) continue;
     plane.height_m = -plane.normal.dot(p[0]);
+    if (!plausible(plane, up)) continue;
     plane.inliers = count(plane);
     if (!best || plane.inliers > best->inliers) best = plane;
   }
-  if (!best || best->inliers < options_.fewest_inliers) return std::nullopt;
+  if (!best || best->inliers < options_.fewest_inliers || !stands_out(*best)) return std::nullopt;
   return best;
+}
+
+// A layer of points, and not a slice of walls: these go on above it.
+bool GroundFinder::stands_out(const GroundPlane& plane) const {
+  GroundPlane above = plane;
+  above.height_m -= kSliceAbove * options_.inlier_m;
+  return plane.inliers > kLeastContrast * count(above);
 }
 
 int GroundFinder::count(const GroundPlane& plane) const {

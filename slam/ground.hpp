@@ -44,6 +44,8 @@ class GroundFinder {
   void collect_candidates(std::span<const Eigen::Vector3f> points_m, const Eigen::Vector3d& up);
   std::optional<GroundPlane> sample_planes(const Eigen::Vector3d& up);
   [[nodiscard]] std::optional<GroundPlane> refine(const GroundPlane& start) const;
+  [[nodiscard]] bool plausible(const GroundPlane& plane, const Eigen::Vector3d& up) const;
+  [[nodiscard]] bool stands_out(const GroundPlane& plane) const;
   [[nodiscard]] int count(const GroundPlane& plane) const;
 
   GroundOptions options_;

@@ -14,8 +14,8 @@ namespace glint::slam {
 struct PlaneTerm {
   Eigen::Vector3d point_m = Eigen::Vector3d::Zero();  ///< Scan frame.
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< Odometry frame, unit length.
-  double offset_m = 0.0;    ///< Of the plane: normal . x = offset.
-  double weight = 1.0;      ///< Of the squared residual.
+  double offset_m = 0.0;                              ///< Of the plane: normal . x = offset.
+  double weight = 1.0;                                ///< Of the squared residual.
 };
 
 /// A keypoint of the scan and the same keypoint where a fixed, older scan saw it. The residual f_b

@@ -79,6 +79,10 @@ MapOptimization MapOptimizer::optimize(const Features& features, const std::vect
   }
   outcome.T_odom_scan = pose;
   outcome.plane_terms = static_cast<int>(planes_.size());
+  outcome.overlap = points_m_.empty() ? 0.0
+                                      : static_cast<double>(planes_.size()) /
+                                            static_cast<double>(points_m_.size());
+  outcome.plane_rms_m = result.plane_rms_m;
   outcome.point_terms = static_cast<int>(points_.size());
   const double variance_m2 = std::max(
       1e-4, result.plane_rms_m * result.plane_rms_m + result.point_rms_m * result.point_rms_m);

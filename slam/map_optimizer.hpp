@@ -30,6 +30,8 @@ struct MapOptimization {
   /// Translation then rotation, right perturbation, m^2 and rad^2.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Identity();
   int plane_terms = 0;
+  double overlap = 0.0;      ///< Share of the scan's surface points that found a plane.
+  double plane_rms_m = 0.0;  ///< Of their distances to it.
   int point_terms = 0;
 };
 
