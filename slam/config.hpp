@@ -63,7 +63,7 @@ struct SlamConfig {
   /// Weight of the ground's residuals to those of other surfaces.
   double ground_weight = 2.0;
   /// About so many points on surfaces are taken from a scan.
-  int plane_points = 1800;
+  int plane_points = 1200;
   /// Nearest map points that give a plane: 3 span it, more are fitted.
   int plane_neighbours = 5;
   /// The local map keeps a point in cubes of this edge (m), within this distance (m) of the sensor.

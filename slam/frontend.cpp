@@ -232,7 +232,7 @@ void Frontend::Impl::begin_map(const LidarScan& scan, const Pose& T_odom_scan) {
   optimizer->reset();
   matches.clear();
   observe_surfaces(scan, Twist::Zero(), T_odom_scan);
-  optimizer->remember(current, matches, T_odom_scan);
+  optimizer->remember(current, matches, T_odom_scan, Twist::Zero());
 }
 
 // Registers the current scan with an older one; [Du & Beltrame 2023, eqs. 2-3].
@@ -335,7 +335,7 @@ void Frontend::Impl::accept(const Registration& motion, const LidarScan& scan) {
   publish(scan, T_odom_scan);
   if (optimizer) {
     const StageTimer timer(clock, times, Stage::kMapOptimization);
-    optimizer->remember(current, matches, T_odom_scan);
+    optimizer->remember(current, matches, T_odom_scan, estimate.velocity);
   }
   become_reference(reference, T_odom_scan);
   make_keyframe(scan);

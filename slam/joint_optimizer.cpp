@@ -14,7 +14,7 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 // Below this ratio of smallest to largest curvature a degree of freedom is not seen at all.
 constexpr double kSingular = 1e-10;
-constexpr double kConverged = 1e-6;
+constexpr double kConverged = 1e-5;
 
 struct NormalEquations {
   Matrix6 plane_hessian = Matrix6::Zero();
@@ -41,34 +41,39 @@ void add_planes(std::span<const PlaneTerm> planes, const Pose& pose, double hube
     Twist j;
     j.head<3>() = to_scan * term.normal;
     j.tail<3>() = term.point_m.cross(j.head<3>());
-    hessian.selfadjointView<Eigen::Lower>().rankUpdate(j, w);
+    const Twist wj = w * j;
+    hessian.noalias() += wj * j.transpose();
     sum.gradient += w * e * j;
     sum.plane_squares += w * e * e;
     sum.plane_weight += w;
   }
-  hessian.triangularView<Eigen::StrictlyUpper>() = hessian.transpose();
 }
 
 // In the scan frame, where the residual R^T (R x + t - y) has the derivative [I | -skew(x)].
 void add_points(std::span<const PointTerm> points, const Pose& pose, double huber_m,
                 NormalEquations& sum) {
   const Pose inverse = pose.inverse();
+  const Eigen::Matrix3d to_scan = inverse.rotation.toRotationMatrix();
+  double weight = 0.0;
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
   for (const PointTerm& term : points) {
     const Eigen::Vector3d& x = term.point_m;
-    const Eigen::Vector3d e = x - inverse * term.fixed_m;
+    const Eigen::Vector3d e = x - (to_scan * term.fixed_m + inverse.translation_m);
     const double w = term.weight * huber_weight(e.norm(), huber_m);
-    Eigen::Matrix3d skew;
-    skew << 0, -x.z(), x.y(), x.z(), 0, -x.x(), -x.y(), x.x(), 0;
-    Matrix6& hessian = sum.point_hessian;
-    hessian.topLeftCorner<3, 3>() += w * Eigen::Matrix3d::Identity();
-    hessian.topRightCorner<3, 3>() -= w * skew;
-    hessian.bottomLeftCorner<3, 3>() += w * skew;
-    hessian.bottomRightCorner<3, 3>() += w * skew.transpose() * skew;
+    const Eigen::Vector3d wx = w * x;
+    weight += w;
+    moment += wx;
+    squares.noalias() += wx * x.transpose();
     sum.gradient.head<3>() += w * e;
-    sum.gradient.tail<3>() += w * x.cross(e);
+    sum.gradient.tail<3>() += wx.cross(e);
     sum.point_squares += w * e.squaredNorm();
-    sum.point_weight += w;
   }
+  Eigen::Matrix3d skew;
+  skew << 0, -moment.z(), moment.y(), moment.z(), 0, -moment.x(), -moment.y(), moment.x(), 0;
+  sum.point_weight += weight;
+  sum.point_hessian << weight * Eigen::Matrix3d::Identity(), -skew, skew,
+      squares.trace() * Eigen::Matrix3d::Identity() - squares;
 }
 
 NormalEquations linearize(const Pose& pose, std::span<const PlaneTerm> planes,

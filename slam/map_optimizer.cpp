@@ -5,13 +5,17 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace glint::slam {
 namespace {
 
 // Associations are made anew while a solution moves the scan by more than this.
-constexpr double kSettled_m = 0.01;
-constexpr double kSettled_rad = 0.001;
+constexpr double kSettled_m = 0.03;
+constexpr double kSettled_rad = 0.002;
+// A point that the sensor's turning displaced by more, in a scan that is taken as rigid, would blur
+// the map.
+constexpr double kDisplaced_m = 0.1;
 // With fewer residuals there is nothing to be said.
 constexpr std::size_t kFewestTerms = 30;
 
@@ -43,11 +47,28 @@ WindowOptions window_options(const SlamConfig& config) {
   return options;
 }
 
+Eigen::Vector2d column_direction(const XyzLut& lut, int column) {
+  return lut.point(0, column, 100'000).head<2>().normalized();
+}
+
+Eigen::Vector2d middle_direction(const SensorInfo& info, const XyzLut& lut) {
+  return column_direction(lut, info.columns_per_frame / 2);
+}
+
+double beam_turn_radps(const SensorInfo& info, const XyzLut& lut) {
+  const Eigen::Vector2d a = middle_direction(info, lut);
+  const Eigen::Vector2d b = column_direction(lut, info.columns_per_frame * 5 / 8);
+  const double turn_s = static_cast<double>(info.scan_period_ns()) * 1e-9;
+  return (a.x() * b.y() - a.y() * b.x() > 0 ? 2.0 : -2.0) * std::numbers::pi / turn_s;
+}
+
 }  // namespace
 
 MapOptimizer::MapOptimizer(const SensorInfo& info, const SlamConfig& config,
                            std::shared_ptr<const XyzLut> lut)
     : config_(config),
+      middle_(middle_direction(info, *lut)),
+      turn_radps_(beam_turn_radps(info, *lut)),
       extractor_(info, plane_options(config), std::move(lut)),
       ground_finder_(ground_options(config)),
       map_(map_options(config)),
@@ -55,6 +76,7 @@ MapOptimizer::MapOptimizer(const SensorInfo& info, const SlamConfig& config,
 
 void MapOptimizer::observe(const LidarScan& scan, const ScanImages& images,
                            const ConstantVelocity* motion, const Eigen::Vector3d& up) {
+  rigid_ = motion == nullptr;
   points_m_.clear();
   ground_count_ = 0;
   ground_plane_.reset();
@@ -69,7 +91,9 @@ MapOptimization MapOptimizer::optimize(const Features& features, const std::vect
   Pose pose = start;
   JointResult result;
   for (int round = 0; round < config_.map_rounds; ++round) {
-    associate(features, matches, pose);
+    map_.associate(points_m_, ground_count_, pose, planes_);
+    // Keypoints are told apart by their looks: they keep their partners.
+    if (round == 0) associate_keypoints(features, matches, pose);
     if (planes_.size() + points_.size() < kFewestTerms) return outcome;
     result = optimize_jointly(pose, planes_, points_);
     if (!result.ok) return outcome;
@@ -91,12 +115,31 @@ MapOptimization MapOptimizer::optimize(const Features& features, const std::vect
   return outcome;
 }
 
-void MapOptimizer::associate(const Features& features, const std::vector<Match>& matches,
-                             const Pose& pose) {
-  map_.associate(points_m_, ground_count_, pose, planes_);
+void MapOptimizer::associate_keypoints(const Features& features, const std::vector<Match>& matches,
+                                       const Pose& pose) {
   points_.clear();
   if (config_.ba) points_ = window_.associate(features, matches, pose);
   for (PointTerm& term : points_) term.weight *= config_.ba_weight;
+}
+
+void MapOptimizer::drop_displaced(const Eigen::Vector3d& turn_radps) {
+  std::size_t kept = 0;
+  std::size_t kept_ground = 0;
+  for (std::size_t i = 0; i < points_m_.size(); ++i) {
+    const Eigen::Vector3d speed_mps = turn_radps.cross(points_m_[i].cast<double>());
+    if (speed_mps.norm() * std::abs(seconds_from_middle(points_m_[i])) > kDisplaced_m) continue;
+    if (i < ground_count_) ++kept_ground;
+    points_m_[kept++] = points_m_[i];
+  }
+  points_m_.resize(kept);
+  ground_count_ = kept_ground;
+}
+
+// By its direction: the beams turn evenly.
+double MapOptimizer::seconds_from_middle(const Eigen::Vector3f& point_m) const {
+  const Eigen::Vector2d p = point_m.head<2>().cast<double>();
+  const double angle_rad = std::atan2(middle_.x() * p.y() - middle_.y() * p.x(), middle_.dot(p));
+  return angle_rad / turn_radps_;
 }
 
 bool MapOptimizer::settled(const Pose& from, const Pose& to) const {
@@ -105,7 +148,8 @@ bool MapOptimizer::settled(const Pose& from, const Pose& to) const {
 }
 
 void MapOptimizer::remember(const Features& features, const std::vector<Match>& matches,
-                            const Pose& T_odom_scan) {
+                            const Pose& T_odom_scan, const Twist& velocity) {
+  if (rigid_) drop_displaced(velocity.tail<3>());
   map_.add(points_m_, ground_count_, T_odom_scan);
   if (config_.ba) window_.push(features, matches, T_odom_scan);
 }

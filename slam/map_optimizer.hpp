@@ -50,9 +50,10 @@ class MapOptimizer {
   /// that odometry could match, none if it could not.
   MapOptimization optimize(const Features& features, const std::vector<Match>& matches,
                            const Pose& start);
-  /// Takes the observed scan into map and window, at its final pose.
+  /// Takes the observed scan into map and window, at its final pose. Of a scan that is taken as
+  /// rigid, what the sensor's turning displaced while it was measured is left out of the map.
   void remember(const Features& features, const std::vector<Match>& matches,
-                const Pose& T_odom_scan);
+                const Pose& T_odom_scan, const Twist& velocity);
   /// Forgets map and window.
   void reset();
 
@@ -61,10 +62,15 @@ class MapOptimizer {
   [[nodiscard]] const std::optional<GroundPlane>& ground() const { return ground_plane_; }
 
  private:
-  void associate(const Features& features, const std::vector<Match>& matches, const Pose& pose);
+  void associate_keypoints(const Features& features, const std::vector<Match>& matches,
+                           const Pose& pose);
+  void drop_displaced(const Eigen::Vector3d& turn_radps);
+  [[nodiscard]] double seconds_from_middle(const Eigen::Vector3f& point_m) const;
   [[nodiscard]] bool settled(const Pose& from, const Pose& to) const;
 
   const SlamConfig config_;
+  Eigen::Vector2d middle_;   ///< Horizontal direction of the scan's middle column, unit length.
+  double turn_radps_ = 0.0;  ///< Of the beams; positive counter-clockwise.
   PlaneExtractor extractor_;
   GroundFinder ground_finder_;
   LocalMap map_;
@@ -72,6 +78,7 @@ class MapOptimizer {
 
   std::vector<Eigen::Vector3f> points_m_;  ///< Of the scan; those on the ground first.
   std::size_t ground_count_ = 0;
+  bool rigid_ = false;
   std::optional<GroundPlane> ground_plane_;
   std::vector<PlaneTerm> planes_;
   std::vector<PointTerm> points_;

@@ -12,6 +12,8 @@ namespace {
 constexpr int kSide = 5;
 // Every so many-th point of a ring may be taken: neighbours say the same.
 constexpr int kStep = 2;
+// Places in the table of voxels for each point wanted.
+constexpr std::size_t kTableShare = 8;
 
 // A voxel's coordinates in one word, never 0.
 std::uint64_t voxel_key(const Eigen::Vector3f& point, float edge_m) {
@@ -36,9 +38,9 @@ PlaneExtractor::PlaneExtractor(const SensorInfo& info, PlaneFeatureOptions optio
   valid_.resize(columns);
   const std::size_t pixels = columns * static_cast<std::size_t>(info.pixels_per_column);
   flat_.reserve(pixels / kStep);
-  // At most half full.
+  // Small enough to stay in the cache, and far from full with the number of points wanted.
   std::size_t size = 1;
-  while (size < 2 * pixels / kStep) size *= 2;
+  while (size < kTableShare * static_cast<std::size_t>(options_.wanted_points)) size *= 2;
   voxel_table_.resize(size);
 }
 
@@ -112,6 +114,8 @@ void PlaneExtractor::thin_out() {
     if (voxel_table_[slot] == key) continue;
     voxel_table_[slot] = key;
     kept_.push_back(point);
+    // Far more than wanted: the voxels are too small yet.
+    if (kept_.size() > voxel_table_.size() / 2) break;
   }
   // On surfaces the number goes with the square of the edge.
   const double share =

@@ -41,11 +41,16 @@ class SlidingWindow {
   struct Frame {
     std::vector<Descriptor> descriptors;
     std::vector<Eigen::Vector3d> fixed_m;  ///< Odometry frame.
+    std::vector<float> x_m, y_m, z_m;      ///< The same, for the look for near ones.
   };
+
+  const std::vector<std::size_t>& near(const Frame& frame, const Eigen::Vector3d& place_m);
 
   WindowOptions options_;
   std::deque<Frame> frames_;  ///< Oldest first.
   std::vector<PointTerm> terms_;
+  std::vector<float> squared_;
+  std::vector<std::size_t> near_;
 };
 
 }  // namespace glint::slam
