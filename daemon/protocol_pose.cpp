@@ -13,19 +13,6 @@ constexpr double kMaxPredictionMs = 200.0;
 
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-/// Takes twists of the sensor to those of a body that is rigidly fixed to it (translation first).
-Matrix6d adjoint(const Pose& T_body_sensor) {
-  const Eigen::Matrix3d r = T_body_sensor.rotation.toRotationMatrix();
-  const Eigen::Vector3d& p = T_body_sensor.translation_m;
-  Eigen::Matrix3d skew;
-  skew << 0, -p.z(), p.y(), p.z(), 0, -p.x(), -p.y(), p.x(), 0;
-  Matrix6d out = Matrix6d::Zero();
-  out.topLeftCorner<3, 3>() = r;
-  out.topRightCorner<3, 3>() = skew * r;
-  out.bottomRightCorner<3, 3>() = r;
-  return out;
-}
-
 Json vector_json(const Eigen::Vector3d& v) { return Json{v.x(), v.y(), v.z()}; }
 
 void put_velocity(Json& out, Twist velocity, PoseFrames frames, const PoseContext& context) {
