@@ -32,11 +32,11 @@ void put_covariance(Json& out, Matrix6d covariance, PoseFrames frames, const Pos
   out["cov"] = std::move(cov);
 }
 
-void put_map_correction(Json& out, const slam::MapCorrection& correction) {
-  Json T_map_odom = Json::object();
-  put_pose(T_map_odom, correction.T_map_odom);
-  out["T_map_odom"] = std::move(T_map_odom);
-  out["map_epoch"] = correction.epoch;
+void put_map_correction(Json& out, const Pose& T_map_odom, std::uint32_t epoch) {
+  Json pose = Json::object();
+  put_pose(pose, T_map_odom);
+  out["T_map_odom"] = std::move(pose);
+  out["map_epoch"] = epoch;
 }
 
 /// The members that every message about a pose begins with.
@@ -75,9 +75,10 @@ Json past_pose_json(const Snapshot& snapshot, SensorTime stamp, PoseFrames frame
   Json out = head_json(record->state, frames);
   put_time(out, stamp);
   put_clock(out, snapshot.clock_source, record->host_time, record->clock_sigma_ns);
-  put_pose(out, pose_in_frames(record->T_odom_sensor, frames, snapshot.correction, context));
+  const Pose T_map_odom = T_map_odom_at(*record, snapshot.correction);
+  put_pose(out, pose_in_frames(record->T_odom_sensor, frames, T_map_odom, context));
   put_velocity(out, record->velocity, frames, context);
-  put_map_correction(out, snapshot.correction);
+  put_map_correction(out, T_map_odom, snapshot.correction.epoch);
   out["interpolated"] = true;
   return out;
 }
@@ -89,10 +90,16 @@ PoseFrames pose_frames(const Json& params) {
           choice_param(params, "child", "sensor|base") == "base"};
 }
 
-Pose pose_in_frames(const Pose& T_odom_sensor, PoseFrames frames, const slam::MapCorrection& map,
+Pose T_map_odom_at(const PoseRecord& record, const slam::MapCorrection& map) {
+  if (!map.anchors) return map.T_map_odom;
+  return map.T_map_sensor(record.segment, record.sequence, record.T_odom_sensor) *
+         record.T_odom_sensor.inverse();
+}
+
+Pose pose_in_frames(const Pose& T_odom_sensor, PoseFrames frames, const Pose& T_map_odom,
                     const PoseContext& context) {
   Pose pose = T_odom_sensor;
-  if (frames.map) pose = map.T_map_odom * pose;
+  if (frames.map) pose = T_map_odom * pose;
   if (frames.base) pose = pose * context.T_base_sensor.inverse();
   return pose;
 }
@@ -101,6 +108,13 @@ void put_pose(Json& out, const Pose& pose) {
   const Eigen::Quaterniond& q = pose.rotation;
   out["p_m"] = vector_json(pose.translation_m);
   out["q_xyzw"] = Json{q.x(), q.y(), q.z(), q.w()};
+}
+
+Json epoch_json(const Snapshot& snapshot) {
+  Json out = Json::object();
+  if (snapshot.estimate) put_time(out, snapshot.estimate->stamp);
+  put_map_correction(out, snapshot.correction.T_map_odom, snapshot.correction.epoch);
+  return out;
 }
 
 Json newest_pose_json(const Snapshot& snapshot, PoseFrames frames, const PoseContext& context,
@@ -112,10 +126,11 @@ Json newest_pose_json(const Snapshot& snapshot, PoseFrames frames, const PoseCon
   put_clock(out, snapshot.clock_source, snapshot.host_time, snapshot.clock.sigma_ns);
   out["age_ms"] = static_cast<double>(now_ns - snapshot.arrival_ns) * 1e-6;
   out["stale"] = is_stale(snapshot, now_ns, context.scan_period_ns);
-  put_pose(out, pose_in_frames(estimate.T_odom_sensor, frames, snapshot.correction, context));
+  put_pose(out,
+           pose_in_frames(estimate.T_odom_sensor, frames, snapshot.correction.T_map_odom, context));
   put_velocity(out, estimate.velocity, frames, context);
   put_covariance(out, estimate.covariance, frames, context);
-  put_map_correction(out, snapshot.correction);
+  put_map_correction(out, snapshot.correction.T_map_odom, snapshot.correction.epoch);
   out["frame_id"] = estimate.frame_id;
   out["segment"] = estimate.segment;
   out["completeness"] = estimate.completeness;
@@ -139,7 +154,7 @@ Json get_pose(const Json& params, const Snapshot& snapshot, const PoseContext& c
   const std::int64_t ahead_ns = std::llround(predict_ms * 1e6);
   put_time(out, estimate.stamp + ahead_ns);
   if (out.contains("t_host_ns")) out["t_host_ns"] = snapshot.host_time.ns + ahead_ns;
-  put_pose(out, pose_in_frames(predicted, frames, snapshot.correction, context));
+  put_pose(out, pose_in_frames(predicted, frames, snapshot.correction.T_map_odom, context));
   out.erase("cov");  // That of the newest pose says nothing about what came after it.
   out["predicted_ms"] = predict_ms;
   return out;

@@ -24,13 +24,19 @@ struct PoseContext {
 /// Reads `frame` (map|odom) and `child` (sensor|base). @throws RpcError.
 PoseFrames pose_frames(const Json& params);
 
-/// The pose of the child in the frame, given that of the sensor in the odometry frame. For frame
-/// odom and child sensor it is the very same bits.
-Pose pose_in_frames(const Pose& T_odom_sensor, PoseFrames frames, const slam::MapCorrection& map,
+/// The pose of the child in the frame, given that of the sensor in the odometry frame and where
+/// this lies in the map. For frame odom and child sensor it is the very same bits.
+Pose pose_in_frames(const Pose& T_odom_sensor, PoseFrames frames, const Pose& T_map_odom,
                     const PoseContext& context);
+
+/// Where the odometry frame lies in the map, by the keyframes about a past pose.
+Pose T_map_odom_at(const PoseRecord& record, const slam::MapCorrection& map);
 
 // Puts p_m and q_xyzw in.
 void put_pose(Json& out, const Pose& pose);
+
+/// What the event `epoch` tells: the correction of the map that came into force.
+Json epoch_json(const Snapshot& snapshot);
 
 /// The newest pose, as get_pose and the pose notification tell it. `now_ns`: steady clock.
 Json newest_pose_json(const Snapshot& snapshot, PoseFrames frames, const PoseContext& context,

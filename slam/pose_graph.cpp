@@ -89,7 +89,7 @@ bool PoseGraph::joined(const LoopEdge& loop) const {
 
 void PoseGraph::add_loop(const LoopEdge& loop) {
   const GraphEdge edge = graph_edge(loop).value();
-  loops_.push_back({loop, edge, drift_factor(edge)});
+  loops_.push_back({loop, edge, drift_factor(edge), false});
 }
 
 // The loop shows how far odometry drifted on the way. Where that is more than its covariance would
@@ -159,16 +159,25 @@ void PoseGraph::solve() {
 std::vector<LoopEdge> PoseGraph::optimize() {
   const std::vector<Pose> before = poses_;
   const auto misfit_of = [&](const Loop& loop) { return chi_squared(loop.graph_edge, poses_); };
+  const auto is_settled = [](const Loop& loop) { return loop.settled; };
   std::vector<LoopEdge> refused;
-  solve();
-  while (!loops_.empty()) {
-    const auto worst = std::ranges::max_element(loops_, {}, misfit_of);
-    if (misfit_of(*worst) <= kLargestChiSquared) break;
-    refused.push_back(worst->edge);
-    loops_.erase(worst);
+  bool settled = std::ranges::all_of(loops_, is_settled);
+  while (!settled) {
     poses_ = before;
     solve();
+    const auto worst = std::ranges::max_element(loops_, {}, misfit_of);
+    if (worst == loops_.end() || misfit_of(*worst) <= kLargestChiSquared) break;
+    const bool was_settled = worst->settled;
+    refused.push_back(worst->edge);
+    loops_.erase(worst);
+    if (was_settled) {
+      for (Loop& loop : loops_) loop.settled = false;
+    }
+    // What the poses were found with is all that is left.
+    settled = !was_settled && std::ranges::all_of(loops_, is_settled);
+    if (settled) poses_ = before;
   }
+  for (Loop& loop : loops_) loop.settled = true;
   return refused;
 }
 

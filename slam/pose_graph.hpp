@@ -49,7 +49,7 @@ class PoseGraph {
   [[nodiscard]] std::size_t loop_count() const { return loops_.size(); }
 
   /// Finds the poses that fit best. Loops that do not fit the others (chi^2 beyond 95 % of right
-  /// ones) are taken out, worst first, as if they had never been; returns them.
+  /// ones) are taken out, worst first; returns them. Poses are as if these had never been.
   std::vector<LoopEdge> optimize();
 
  private:
@@ -57,6 +57,7 @@ class PoseGraph {
     LoopEdge edge;
     GraphEdge graph_edge;
     double drift_factor = 1.0;  ///< By how much odometry's covariance along it was too small.
+    bool settled = false;       ///< The poses are those that optimize() found with it.
   };
 
   [[nodiscard]] std::optional<std::size_t> find(std::uint64_t id) const;
