@@ -74,6 +74,13 @@ void VoxelMap::move(std::span<const Pose> T_new_old) {
   moved_revision_ = ++revision_;
   point_count_ = 0;
   const std::map<TileIndex, WorkingTile> old = std::exchange(tiles_, {});
+  // Most points stay in their tile: room for them is made at once.
+  for (const auto& [index, tile] : old) {
+    WorkingTile& fresh = tiles_[index];
+    fresh.tile.points.reserve(tile.views.size());
+    fresh.views.reserve(tile.views.size());
+    fresh.occupied_voxels.reserve(tile.occupied_voxels.size());
+  }
   for (const auto& [index, tile] : old) {
     for (std::size_t i = 0; i < tile.views.size(); ++i) {
       const MapPoint& point = tile.tile.points[i];
@@ -82,8 +89,12 @@ void VoxelMap::move(std::span<const Pose> T_new_old) {
       if (possible(p)) put(cell_of(p), map_point(p, point.intensity), tile.views[i]);
     }
   }
-  for (const auto& [index, tile] : old) removed_[index] = revision_;
   for (const auto& [index, tile] : tiles_) removed_.erase(index);
+  std::erase_if(tiles_, [&](const auto& entry) {
+    const bool empty = entry.second.views.empty();
+    if (empty) removed_[entry.first] = revision_;
+    return empty;
+  });
 }
 
 std::shared_ptr<MapSnapshot> VoxelMap::snapshot() {
