@@ -94,23 +94,22 @@ void Backend::finish() {
 
 void Backend::look_for_loops(const Keyframe& keyframe) {
   LoopSearch found = loops_(keyframe);
-  std::optional<LoopReport> taken;
   for (LoopCandidate& candidate : found.candidates) {
-    const bool is_edge = found.edge && candidate.from == found.edge->from;
-    LoopReport report{stamp_, std::move(candidate), {}, {}, {}};
-    if (is_edge) {
-      taken = std::move(report);
-    } else {
-      loop_reports_.push_back(std::move(report));
-    }
+    loop_reports_.push_back({stamp_, std::move(candidate), {}, {}, {}});
   }
   if (found.edge) {
-    if (!taken) taken = LoopReport{stamp_, {}, {}, {}, {}};
-    taken->candidate.from = found.edge->from;
-    taken->candidate.to = found.edge->to;
-    taken->candidate.accepted = true;
-    take_loop(*found.edge, *taken);
-    loop_reports_.push_back(std::move(*taken));
+    const LoopEdge& edge = *found.edge;
+    const auto is_of_edge = [&](const LoopReport& r) { return r.candidate.from == edge.from; };
+    const auto known = std::ranges::find_if(loop_reports_, is_of_edge);
+    const auto slot = static_cast<std::size_t>(known - loop_reports_.begin());
+    if (known == loop_reports_.end()) loop_reports_.emplace_back().stamp = stamp_;
+    // Further reports may join it meanwhile.
+    LoopReport report = std::move(loop_reports_[slot]);
+    report.candidate.from = edge.from;
+    report.candidate.to = edge.to;
+    report.candidate.accepted = true;
+    take_loop(edge, report);
+    loop_reports_[slot] = std::move(report);
   }
   loops_rejected_ += static_cast<std::uint64_t>(std::ranges::count_if(
       loop_reports_, [](const LoopReport& report) { return !report.candidate.accepted; }));
@@ -145,11 +144,12 @@ void Backend::take_loop(const LoopEdge& edge, LoopReport& report) {
 }
 
 void Backend::report_refused(const LoopEdge& edge, const char* reason) {
-  LoopReport report{stamp_, {}, {}, graph_.misfit(edge), {}};
+  LoopReport& report = loop_reports_.emplace_back();
+  report.stamp = stamp_;
   report.candidate.from = edge.from;
   report.candidate.to = edge.to;
   report.candidate.reason = reason;
-  loop_reports_.push_back(std::move(report));
+  report.after = graph_.misfit(edge);
   changes_.removed.push_back(edge);
 }
 
