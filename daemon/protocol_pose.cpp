@@ -47,6 +47,13 @@ Json head_json(slam::TrackingState state, PoseFrames frames) {
               {"child", frames.base ? "base" : "sensor"}};
 }
 
+/// As pose_in_frames, for a pose that the newest correction holds for.
+Pose newest_in_frames(const Pose& T_odom_sensor, const Snapshot& snapshot, PoseFrames frames,
+                      const PoseContext& context) {
+  return pose_in_frames(T_odom_sensor, snapshot.correction.T_map_odom * T_odom_sensor, frames,
+                        context);
+}
+
 /// What the time of a pose is worth: where it comes from, and when it was on this machine.
 void put_clock(Json& out, ClockSource source, HostTime host_time, std::int64_t sigma_ns) {
   out["clock"] = to_string(source);
@@ -75,10 +82,14 @@ Json past_pose_json(const Snapshot& snapshot, SensorTime stamp, PoseFrames frame
   Json out = head_json(record->state, frames);
   put_time(out, stamp);
   put_clock(out, snapshot.clock_source, record->host_time, record->clock_sigma_ns);
-  const Pose T_map_odom = T_map_odom_at(*record, snapshot.correction);
-  put_pose(out, pose_in_frames(record->T_odom_sensor, frames, T_map_odom, context));
+  const slam::MapCorrection& correction = snapshot.correction;
+  const Pose& T_odom_sensor = record->T_odom_sensor;
+  const Pose T_map_sensor = correction.map_pose(record->segment, record->sequence, T_odom_sensor);
+  put_pose(out, pose_in_frames(T_odom_sensor, T_map_sensor, frames, context));
   put_velocity(out, record->velocity, frames, context);
-  put_map_correction(out, T_map_odom, snapshot.correction.epoch);
+  const Pose T_map_odom =
+      correction.anchors ? T_map_sensor * T_odom_sensor.inverse() : correction.T_map_odom;
+  put_map_correction(out, T_map_odom, correction.epoch);
   out["interpolated"] = true;
   return out;
 }
@@ -90,16 +101,9 @@ PoseFrames pose_frames(const Json& params) {
           choice_param(params, "child", "sensor|base") == "base"};
 }
 
-Pose T_map_odom_at(const PoseRecord& record, const slam::MapCorrection& map) {
-  if (!map.anchors) return map.T_map_odom;
-  return map.T_map_sensor(record.segment, record.sequence, record.T_odom_sensor) *
-         record.T_odom_sensor.inverse();
-}
-
-Pose pose_in_frames(const Pose& T_odom_sensor, PoseFrames frames, const Pose& T_map_odom,
+Pose pose_in_frames(const Pose& T_odom_sensor, const Pose& T_map_sensor, PoseFrames frames,
                     const PoseContext& context) {
-  Pose pose = T_odom_sensor;
-  if (frames.map) pose = T_map_odom * pose;
+  Pose pose = frames.map ? T_map_sensor : T_odom_sensor;
   if (frames.base) pose = pose * context.T_base_sensor.inverse();
   return pose;
 }
@@ -126,8 +130,7 @@ Json newest_pose_json(const Snapshot& snapshot, PoseFrames frames, const PoseCon
   put_clock(out, snapshot.clock_source, snapshot.host_time, snapshot.clock.sigma_ns);
   out["age_ms"] = static_cast<double>(now_ns - snapshot.arrival_ns) * 1e-6;
   out["stale"] = is_stale(snapshot, now_ns, context.scan_period_ns);
-  put_pose(out,
-           pose_in_frames(estimate.T_odom_sensor, frames, snapshot.correction.T_map_odom, context));
+  put_pose(out, newest_in_frames(estimate.T_odom_sensor, snapshot, frames, context));
   put_velocity(out, estimate.velocity, frames, context);
   put_covariance(out, estimate.covariance, frames, context);
   put_map_correction(out, snapshot.correction.T_map_odom, snapshot.correction.epoch);
@@ -154,7 +157,7 @@ Json get_pose(const Json& params, const Snapshot& snapshot, const PoseContext& c
   const std::int64_t ahead_ns = std::llround(predict_ms * 1e6);
   put_time(out, estimate.stamp + ahead_ns);
   if (out.contains("t_host_ns")) out["t_host_ns"] = snapshot.host_time.ns + ahead_ns;
-  put_pose(out, pose_in_frames(predicted, frames, snapshot.correction.T_map_odom, context));
+  put_pose(out, newest_in_frames(predicted, snapshot, frames, context));
   out.erase("cov");  // That of the newest pose says nothing about what came after it.
   out["predicted_ms"] = predict_ms;
   return out;

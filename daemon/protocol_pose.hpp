@@ -24,13 +24,10 @@ struct PoseContext {
 /// Reads `frame` (map|odom) and `child` (sensor|base). @throws RpcError.
 PoseFrames pose_frames(const Json& params);
 
-/// The pose of the child in the frame, given that of the sensor in the odometry frame and where
-/// this lies in the map. For frame odom and child sensor it is the very same bits.
-Pose pose_in_frames(const Pose& T_odom_sensor, PoseFrames frames, const Pose& T_map_odom,
+/// The pose of the child in the frame, given that of the sensor in either. For child sensor it is
+/// the very same bits.
+Pose pose_in_frames(const Pose& T_odom_sensor, const Pose& T_map_sensor, PoseFrames frames,
                     const PoseContext& context);
-
-/// Where the odometry frame lies in the map, by the keyframes about a past pose.
-Pose T_map_odom_at(const PoseRecord& record, const slam::MapCorrection& map);
 
 // Puts p_m and q_xyzw in.
 void put_pose(Json& out, const Pose& pose);

@@ -61,7 +61,7 @@ LoopSource known_loops(std::map<std::uint64_t, LoopEdge> edges) {
 double error_m(const MapCorrection& correction, std::uint64_t k) {
   const OdometryEstimate estimate = keyframe(k).estimate;
   const Pose pose =
-      correction.T_map_sensor(0, static_cast<double>(estimate.sequence), estimate.T_odom_sensor);
+      correction.map_pose(0, static_cast<double>(estimate.sequence), estimate.T_odom_sensor);
   return (pose.translation_m - true_pose(k).translation_m).norm();
 }
 
@@ -88,12 +88,12 @@ TEST(Backend, ScansBetweenKeyframesMoveWithThem) {
   Backend backend({}, {}, {}, known_loops({{kRound, true_loop(0, kRound)}}));
   for (std::uint64_t k = 0; k <= kRound; ++k) backend.process(keyframe(k));
   const MapCorrection& correction = backend.correction();
-  Pose last = correction.T_map_sensor(0, 0.0, keyframe(0).estimate.T_odom_sensor);
+  Pose last = correction.map_pose(0, 0.0, keyframe(0).estimate.T_odom_sensor);
   for (int scan = 1; scan <= static_cast<int>(5 * kRound); ++scan) {
     const auto k = static_cast<std::uint64_t>(scan / 5);
     const Pose T_odom_sensor = interpolate(keyframe(k).estimate.T_odom_sensor,
                                            keyframe(k + 1).estimate.T_odom_sensor, scan % 5 / 5.0);
-    const Pose pose = correction.T_map_sensor(0, scan, T_odom_sensor);
+    const Pose pose = correction.map_pose(0, scan, T_odom_sensor);
     const double step_m = (last.inverse() * pose).translation_m.norm();
     EXPECT_NEAR(step_m, 2.0 * M_PI * 10.0 / (5 * kRound), 0.02) << scan;
     last = pose;
@@ -193,13 +193,13 @@ TEST(Backend, ASegmentWithoutALoopGoesOnFromTheHeldPoseAndJumpsWithIts) {
   const MapCorrection& correction = backend.correction();
   EXPECT_EQ(correction.epoch, 1U);
   const auto moved = [&](std::uint32_t segment, std::uint64_t k, const Pose& T_odom_sensor) {
-    const Pose pose = correction.T_map_sensor(segment, 5.0 * static_cast<double>(k), T_odom_sensor);
+    const Pose pose = correction.map_pose(segment, 5.0 * static_cast<double>(k), T_odom_sensor);
     return (pose.inverse() * T_odom_sensor).translation_m.norm();
   };
   EXPECT_LT(moved(0, 20, keyframe(20).estimate.T_odom_sensor), 1e-9) << "it holds the map";
   const Pose T_odom_sensor = carried_off * keyframe(kRound + 30).estimate.T_odom_sensor;
   EXPECT_GT(moved(1, kRound + 30, T_odom_sensor), 1.0);
-  const Pose here = correction.T_map_sensor(1, 5.0 * (kRound + 30), T_odom_sensor);
+  const Pose here = correction.map_pose(1, 5.0 * (kRound + 30), T_odom_sensor);
   const Pose seen = keyframe(30).estimate.T_odom_sensor;
   EXPECT_LT((here.translation_m - seen.translation_m).norm(), 1e-6);
 }

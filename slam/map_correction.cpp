@@ -7,8 +7,8 @@
 
 namespace glint::slam {
 
-Pose MapCorrection::T_map_sensor(std::uint32_t segment, double sequence,
-                                 const Pose& T_odom_sensor) const {
+Pose MapCorrection::map_pose(std::uint32_t segment, double sequence,
+                             const Pose& T_odom_sensor) const {
   if (!anchors || anchors->empty()) return T_map_odom * T_odom_sensor;
   const auto after = std::upper_bound(
       anchors->begin(), anchors->end(), std::pair(segment, sequence),

@@ -28,8 +28,8 @@ struct MapCorrection {
 
   /// The pose in the map of the scan `sequence` (a fraction: between two scans): as the keyframes
   /// before and after it in its segment have it, in proportion. At a keyframe, that keyframe's.
-  [[nodiscard]] Pose T_map_sensor(std::uint32_t segment, double sequence,
-                                  const Pose& T_odom_sensor) const;
+  [[nodiscard]] Pose map_pose(std::uint32_t segment, double sequence,
+                              const Pose& T_odom_sensor) const;
 };
 
 }  // namespace glint::slam

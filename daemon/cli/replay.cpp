@@ -166,7 +166,7 @@ Trajectories trajectories_of(const ReplayResult& result) {
   for (const slam::OdometryEstimate& estimate : result.estimates) {
     if (!has_pose(estimate)) continue;
     trajectories.odometry.push_back({estimate.stamp, estimate.T_odom_sensor});
-    trajectories.optimised.push_back({estimate.stamp, T_map_sensor(result, estimate)});
+    trajectories.optimised.push_back({estimate.stamp, map_pose(result, estimate)});
   }
   return trajectories;
 }

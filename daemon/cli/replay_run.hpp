@@ -39,9 +39,9 @@ struct ReplayResult {
 };
 
 /// The pose in the map, by all that the capture held.
-inline Pose T_map_sensor(const ReplayResult& result, const slam::OdometryEstimate& estimate) {
-  return result.correction.T_map_sensor(estimate.segment, static_cast<double>(estimate.sequence),
-                                        estimate.T_odom_sensor);
+inline Pose map_pose(const ReplayResult& result, const slam::OdometryEstimate& estimate) {
+  return result.correction.map_pose(estimate.segment, static_cast<double>(estimate.sequence),
+                                    estimate.T_odom_sensor);
 }
 
 struct ReplayOptions {

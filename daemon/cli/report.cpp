@@ -51,7 +51,7 @@ std::string trajectory_section(const ReplayResult& result) {
   Curve height;
   for (const slam::OdometryEstimate& estimate : result.estimates) {
     if (!has_pose(estimate)) continue;
-    const Pose pose = T_map_sensor(result, estimate);
+    const Pose pose = map_pose(result, estimate);
     above.points.emplace_back(pose.translation_m.x(), pose.translation_m.y());
     height.points.emplace_back(seconds_from_start(result, estimate), pose.translation_m.z());
   }
