@@ -75,6 +75,9 @@ struct SlamConfig {
   /// Most times that associations are made anew for a scan.
   int map_rounds = 4;
 
+  /// Places seen before close loops.
+  bool loops = true;
+
   /// A keyframe is made after this distance (m), angle (rad), or when fewer matches remain.
   double keyframe_distance_m = 0.5;
   double keyframe_angle_rad = 0.26;
