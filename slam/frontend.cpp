@@ -320,6 +320,10 @@ void Frontend::Impl::make_keyframe(const LidarScan& scan) {
   keyframe.emplace();
   keyframe->id = next_keyframe_id++;
   keyframe->estimate = estimate;
+  keyframe->features = reference.features;  // which the scan has become
+  if (!config.deskew) {
+    for (Eigen::Vector3d& point_m : keyframe->features.points_m) point_m = T_end_middle * point_m;
+  }
   for (int m = 0; m < columns; m += std::max(1, config.map_column_step)) {
     const auto column = static_cast<std::size_t>(m);
     const Pose T_end_column = config.deskew ? motion.at(scan.column_time[column]) : T_end_middle;
