@@ -77,6 +77,12 @@ struct SlamConfig {
   double keyframe_angle_rad = 0.26;
   int keyframe_min_matches = 60;
 
+  /// Places seen again are recognised and correct the map.
+  bool loops = true;
+  /// File of the vocabulary that recognises them, see `glint train-vocabulary`; empty: the built-in
+  /// one.
+  std::string vocabulary;
+
   /// Edge of the map's voxels, m: one point is kept in each. 0: a fortieth of the first keyframe's
   /// median range, between 0.05 and 0.5 m, so that rooms and streets need no setting.
   double map_voxel_m = 0.0;
