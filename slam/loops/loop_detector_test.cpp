@@ -114,7 +114,7 @@ TEST(LoopDetector, RepeatsBitForBit) {
   const auto run = [] {
     Walk walk;
     walk.go(2.0, 28.0);
-    walk.go(28.0, 14.0);
+    walk.go(28.0, 6.0);
     return walk.edges;
   };
   const auto first = run();

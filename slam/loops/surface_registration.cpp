@@ -51,6 +51,7 @@ class Registrator {
       associate(gate_m);
       outcome.weak_axes = strip_weak_axes();
       if (terms_.size() < kFewestTerms) return outcome;
+      keypoints_.back().fixed_m = pose_.translation_m;
       joint_ = optimize_jointly(pose_, terms_, keypoints_);
       if (!joint_.ok) return outcome;
       const Pose step = pose_.inverse() * joint_.T_odom_scan;
