@@ -69,7 +69,9 @@ void train(const TrainOptions& options) {
   const slam::SlamConfig config = slam::preset_config(options.preset);
   Images images;
   for (const std::string& capture : options.captures) {
-    const std::size_t scans = add_images({.capture = capture}, config, options.every, images);
+    CaptureInput input;
+    input.capture = capture;
+    const std::size_t scans = add_images(input, config, options.every, images);
     std::cout << fmt::format("{}: {} scans\n", capture, scans) << std::flush;
   }
   const slam::Vocabulary vocabulary = slam::train_vocabulary(images, options.tree);

@@ -45,10 +45,10 @@ double chance_of(int count, int found, double share) {
   return sum;
 }
 
-// The keypoints of a few places by where they are.
+// The keypoints of a few places by where they are, and their surfaces.
 class Known {
  public:
-  Known(const Place& base, std::span<const Place> around) {
+  Known(const Place& base, std::span<const Place> around) : voxel_m_(base.voxel_m) {
     const Pose T_base_odom = base.T_odom_sensor.inverse();
     for (const Place& place : around) {
       const Pose T_base_place = T_base_odom * place.T_odom_sensor;
@@ -57,7 +57,29 @@ class Known {
             (T_base_place * place.keypoints_m[i].cast<double>()).cast<float>();
         cells_[voxel_key(at_m, kCell_m)].push_back({at_m, &place.descriptors[i]});
       }
+      for (const Eigen::Vector3f& point_m : place.points_m) {
+        const Eigen::Vector3f at_m = (T_base_place * point_m.cast<double>()).cast<float>();
+        surface_.emplace(voxel_key(at_m, voxel_m_), at_m);
+      }
     }
+  }
+
+  /// Whether there is a surface there; a car that has left had one that is gone.
+  [[nodiscard]] bool sees(const Eigen::Vector3f& at_m) const {
+    const Eigen::Vector3i home = voxel_of(at_m, voxel_m_);
+    Eigen::Vector3i offset;
+    for (offset.x() = -1; offset.x() <= 1; ++offset.x()) {
+      for (offset.y() = -1; offset.y() <= 1; ++offset.y()) {
+        for (offset.z() = -1; offset.z() <= 1; ++offset.z()) {
+          const auto found = surface_.find(voxel_key(home + offset));
+          if (found != surface_.end() &&
+              (found->second - at_m).squaredNorm() < voxel_m_ * voxel_m_) {
+            return true;
+          }
+        }
+      }
+    }
+    return false;
   }
 
   [[nodiscard]] bool has(const Eigen::Vector3f& at_m, float gate_m,
@@ -85,6 +107,8 @@ class Known {
  private:
   std::unordered_map<std::uint64_t, std::vector<std::pair<Eigen::Vector3f, const Descriptor*>>>
       cells_;
+  const float voxel_m_;
+  std::unordered_map<std::uint64_t, Eigen::Vector3f> surface_;  ///< A point in each voxel.
 };
 
 }  // namespace
@@ -99,7 +123,7 @@ Comparison compare_places(const Place& known, std::span<const Place> around, con
   for (std::size_t i = 0; i < strong; ++i) {
     const Eigen::Vector3f at_m = (T_known_seen * seen.keypoints_m[i].cast<double>()).cast<float>();
     const float range_m = std::max(at_m.norm(), seen.keypoints_m[i].norm());
-    if (range_m > kFarthest_m) continue;
+    if (range_m > kFarthest_m || !index.sees(at_m)) continue;
     const bool found = index.has(at_m, kGate_m + kGateShare * range_m, seen.descriptors[i]);
     for (Cube* cube : {&all, &cubes[voxel_key(at_m, kCube_m)]}) {
       ++cube->keypoints;

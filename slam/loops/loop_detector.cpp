@@ -30,20 +30,14 @@ constexpr std::size_t kAround = 5;
 constexpr std::size_t kBeside = 2;
 // A loop says most of what those just after it would.
 constexpr double kLoopEvery_m = 1.0;
-// A loop is believed once so many keyframes in a row have borne one another out over this way; what
-// lies farther back than the second value no longer counts.
-constexpr int kWitnesses = 3;
-constexpr double kWitnessWay_m = 1.0;
-constexpr double kWitnessReach_m = 5.0;
-// Two loops bear each other out when they differ by no more than this and a share of the way
-// between them.
-constexpr double kAgree_m = 0.3;
-constexpr double kAgreeShare = 0.05;
-constexpr double kAgree_rad = 0.09;
+// Over so long a way the last loop says where others can be.
+constexpr double kLoopMemory_m = 30.0;
 // What odometry may have erred by.
 constexpr double kMostDrift_m = 15.0;
 constexpr double kMostDriftShare = 0.05;
 constexpr double kMostTurn_rad = 0.8;
+
+Waypoint waypoint(const Place& place) { return {place.segment, place.path_m, place.T_odom_sensor}; }
 
 std::size_t apart(std::size_t a, std::size_t b) { return a > b ? a - b : b - a; }
 
@@ -117,40 +111,51 @@ int LoopDetector::streak_at(std::size_t entry) const {
 
 std::optional<LoopEdge> LoopDetector::verify() {
   const double path_m = places_.back().path_m;
-  if (loop_path_m_ && path_m - *loop_path_m_ < kLoopEvery_m) return std::nullopt;
-  std::size_t matched = 0;
+  if (last_loop_ && path_m - last_loop_->current.path_m < kLoopEvery_m) return std::nullopt;
+  verified_.clear();
   for (const Region& region : regions_) {
     if (region.streak < kStreak) continue;
-    if (matched++ == kMostMatched) break;
+    if (candidates_.size() == kMostMatched) break;
     LoopCandidate& candidate = candidates_.emplace_back();
     candidate.similarity = region.similarity;
-    LoopEdge edge;
-    if (!verify(region.best, candidate, edge)) continue;
-    bear_witness(edge, region.best);
-    if (witnesses_ < kWitnesses || path_m - witnessed_from_m_ < kWitnessWay_m) {
-      candidate.reason = "not yet borne out by other keyframes";
-      return std::nullopt;
-    }
-    candidate.accepted = true;
-    loop_path_m_ = path_m;
-    return edge;
+    Verified found{candidates_.size() - 1, {}, {}};
+    if (verify(region.best, candidate, found)) verified_.push_back(found);
   }
-  return std::nullopt;
+  if (verified_.empty()) return std::nullopt;
+  const Verified& best = verified_.front();
+  const auto contradicts = [&](const Verified& other) { return !agree(best.pair, other.pair); };
+  const auto refuse = [&](const char* reason) {
+    for (const Verified& found : verified_) candidates_[found.candidate].reason = reason;
+    return std::nullopt;
+  };
+  if (std::ranges::any_of(verified_, contradicts)) return refuse("another place fits as well");
+  evidence_.speak_for(best.pair);
+  if (!evidence_.convincing()) return refuse("not yet borne out by other keyframes");
+  if (last_loop_ && path_m - last_loop_->current.path_m < kLoopMemory_m &&
+      !agree(*last_loop_, best.pair)) {
+    return refuse("the loop before contradicts it");
+  }
+  refuse("another keyframe of the same place is nearer");
+  candidates_[best.candidate].reason.clear();
+  candidates_[best.candidate].accepted = true;
+  last_loop_ = best.pair;
+  return best.edge;
 }
 
-bool LoopDetector::verify(std::size_t entry, LoopCandidate& candidate, LoopEdge& edge) {
+bool LoopDetector::verify(std::size_t entry, LoopCandidate& candidate, Verified& found) {
   const Place& older = places_[entry];
   const Place& current = places_.back();
   const Consensus start = verifier_.match(older, current, candidate);
   if (!candidate.reason.empty()) return false;
-  if (!verifier_.registered(older, around(entry, kAround), current, start, candidate, edge)) {
+  if (!verifier_.registered(older, around(entry, kAround), current, start, candidate, found.edge)) {
     return false;
   }
-  if (!believable(edge, older, current)) {
+  found.pair = {waypoint(older), waypoint(current), found.edge.T_from_to};
+  if (!believable(found.edge, older, current)) {
     candidate.reason = "odometry does not err that far";
-  } else if (contradicted(entry, edge.T_from_to)) {
+  } else if (contradicted(entry, found.edge.T_from_to)) {
     candidate.reason = "the places show different things";
-    witnesses_ = 0;
+    evidence_.speak_against(found.pair);
   }
   return candidate.reason.empty();
 }
@@ -176,34 +181,6 @@ bool LoopDetector::contradicted(std::size_t entry, const Pose& T_older_current) 
          compare_places(current, around(places_.size() - 1, kBeside), older,
                         T_older_current.inverse())
                  .contradictions > 0;
-}
-
-// Counts the loops in a row that agree with one another by way of odometry.
-void LoopDetector::bear_witness(const LoopEdge& edge, std::size_t entry) {
-  const Place& older = places_[entry];
-  const Place& current = places_.back();
-  if (witnesses_ == 0 || !agrees_with_witness(edge, older, current)) {
-    witnesses_ = 0;
-    witnessed_from_m_ = current.path_m;
-  }
-  ++witnesses_;
-  witness_ = {edge.T_from_to, entry, places_.size() - 1};
-}
-
-bool LoopDetector::agrees_with_witness(const LoopEdge& edge, const Place& older,
-                                       const Place& current) const {
-  const Place& last_older = places_[witness_.older];
-  const Place& last_current = places_[witness_.current];
-  if (current.path_m - last_current.path_m > kWitnessReach_m ||
-      older.segment != last_older.segment || current.segment != last_current.segment) {
-    return false;
-  }
-  const Pose T_older = last_older.T_odom_sensor.inverse() * older.T_odom_sensor;
-  const Pose T_current = last_current.T_odom_sensor.inverse() * current.T_odom_sensor;
-  const Pose apart = (witness_.T_older_current * T_current).inverse() * (T_older * edge.T_from_to);
-  const double way_m = T_older.translation_m.norm() + T_current.translation_m.norm();
-  return apart.translation_m.norm() < kAgree_m + kAgreeShare * way_m &&
-         so3_log(apart.rotation).norm() < kAgree_rad;
 }
 
 std::span<const Place> LoopDetector::around(std::size_t entry, std::size_t reach) const {

@@ -10,6 +10,7 @@
 
 #include "slam/keyframe.hpp"
 #include "slam/loop_edge.hpp"
+#include "slam/loops/loop_evidence.hpp"
 #include "slam/loops/loop_verifier.hpp"
 #include "slam/loops/place.hpp"
 #include "slam/loops/place_index.hpp"
@@ -18,10 +19,12 @@
 namespace glint::slam {
 
 /// Finds keyframes that see a place again, by what it looks like: bags of visual words propose
-/// older keyframes, three keyframes in a row must point to the same place, then LoopVerifier
-/// decides. The poses need not be near one another; they serve to put neighbouring keyframes
-/// together and to refuse what no odometry errs by. What is kept of a keyframe is bounded, see
-/// Place. The result depends on the keyframes alone. Thread-compatible.
+/// older keyframes, three keyframes in a row must point to the same place, LoopVerifier looks at
+/// each, nothing may show that it is another place of the same make (look_alike.hpp), and several
+/// keyframes must bear one another out (loop_evidence.hpp). When in doubt it is no loop. The poses
+/// need not be near one another; they serve to put neighbouring keyframes together and to refuse
+/// what no odometry errs by. What is kept of a keyframe is bounded, see Place. The result depends
+/// on the keyframes alone. Thread-compatible.
 class LoopDetector {
  public:
   explicit LoopDetector(std::shared_ptr<const Vocabulary> vocabulary);
@@ -39,11 +42,11 @@ class LoopDetector {
     double similarity = 0.0;  ///< Relative to that of neighbouring keyframes.
     int streak = 1;           ///< Keyframes in a row that pointed here.
   };
-  /// A loop that was verified, and which places it joins.
-  struct Witness {
-    Pose T_older_current;
-    std::size_t older = 0;
-    std::size_t current = 0;
+  /// A candidate that passed all that one keyframe can be asked.
+  struct Verified {
+    std::size_t candidate = 0;
+    LoopEdge edge;
+    PlacePair pair;
   };
 
   void append(const Keyframe& keyframe);
@@ -51,13 +54,10 @@ class LoopDetector {
   void propose(const BagOfWords& bag);
   [[nodiscard]] int streak_at(std::size_t entry) const;
   std::optional<LoopEdge> verify();
-  bool verify(std::size_t entry, LoopCandidate& candidate, LoopEdge& edge);
+  bool verify(std::size_t entry, LoopCandidate& candidate, Verified& found);
   [[nodiscard]] bool believable(const LoopEdge& edge, const Place& older,
                                 const Place& current) const;
   [[nodiscard]] bool contradicted(std::size_t entry, const Pose& T_older_current) const;
-  void bear_witness(const LoopEdge& edge, std::size_t entry);
-  [[nodiscard]] bool agrees_with_witness(const LoopEdge& edge, const Place& older,
-                                         const Place& current) const;
   [[nodiscard]] std::span<const Place> around(std::size_t entry, std::size_t reach) const;
 
   const std::shared_ptr<const Vocabulary> vocabulary_;
@@ -66,14 +66,13 @@ class LoopDetector {
   std::vector<Place> places_;  ///< The current one is the last.
   SensorTime last_stamp_;
   BagOfWords last_bag_;
-  std::size_t aged_ = 0;               ///< Places before this one are old enough to be found again.
-  int witnesses_ = 0;                  ///< Loops in a row that agree, accepted or not.
-  Witness witness_;                    ///< The last of them.
-  double witnessed_from_m_ = 0.0;      ///< Path at the first of them.
-  std::optional<double> loop_path_m_;  ///< Path at the last loop.
-  std::vector<Region> regions_;        ///< Of the current keyframe, the likeliest first.
-  std::vector<Region> last_regions_;   ///< Of the one before.
+  std::size_t aged_ = 0;  ///< Places before this one are old enough to be found again.
+  LoopEvidence evidence_;
+  std::optional<PlacePair> last_loop_;
+  std::vector<Region> regions_;       ///< Of the current keyframe, the likeliest first.
+  std::vector<Region> last_regions_;  ///< Of the one before.
   std::vector<LoopCandidate> candidates_;
+  std::vector<Verified> verified_;  ///< Of them; reused.
 };
 
 }  // namespace glint::slam

@@ -73,7 +73,8 @@ bool LoopVerifier::registered(const Place& older, std::span<const Place> around,
     candidate.reason = "the surfaces do not fix the motion";
   } else if (found.overlap < options_.min_overlap) {
     candidate.reason = "the surfaces overlap too little";
-  } else if (found.rms_m > options_.max_rms_m) {
+  } else if (found.rms_m > std::max(options_.max_rms_m,
+                                    options_.max_rms_share * static_cast<double>(older.voxel_m))) {
     candidate.reason = "the surfaces lie apart";
   }
   if (!candidate.reason.empty()) return false;

@@ -19,7 +19,8 @@ struct LoopVerifierOptions {
   double min_inlier_share = 0.4;
   int min_sectors = 3;  ///< Of eight.
   double min_overlap = 0.4;
-  double max_rms_m = 0.1;
+  double max_rms_m = 0.09;               ///< Where points lie close.
+  double max_rms_share = 0.25;           ///< Of the points' spacing, where that is more.
   std::size_t registered_points = 1000;  ///< Of the current place, at most.
 };
 

@@ -86,7 +86,7 @@ TEST(SurfaceRegistration, SaysThatACorridorsWallsLeaveItsAxisOpen) {
   const Eigen::Vector3d along = truth.rotation.conjugate() * Eigen::Vector3d::UnitX();
   const Eigen::Vector3d across = truth.rotation.conjugate() * Eigen::Vector3d::UnitY();
   EXPECT_GT(std::sqrt(along.dot(position * along)), 5.0);
-  EXPECT_LT(std::sqrt(across.dot(position * across)), 0.05);
+  EXPECT_LT(std::sqrt(across.dot(position * across)), 0.1);
 }
 
 TEST(SurfaceRegistration, KeypointsSayWhereAlongACorridor) {

@@ -30,6 +30,9 @@ constexpr double kSurfaceSigma_m = 0.03;
 constexpr double kKeypointSigma_m = 0.1;
 // Holds the scan where it is along what nothing fixes, and moves it nowhere else.
 constexpr double kAnchorWeight = 1e-3;
+// What a scan's own points are off by together: the sensor swayed while it was taken.
+constexpr double kOwnSigma_m = 0.01;
+constexpr double kOwnSigma_rad = 0.007;
 // What is known without looking: a place is no farther off than this.
 constexpr double kOpenSigma_m = 30.0;
 constexpr double kOpenSigma_rad = 1.0;
@@ -139,7 +142,10 @@ class Registrator {
             (kPointsPerMeasurement * variance(joint_.plane_rms_m, kSurfaceSigma_m)) +
         keypoint_hessian / (kKeypointWeight * variance(joint_.point_rms_m, kKeypointSigma_m)) +
         Matrix6(open.asDiagonal());
-    outcome.covariance = information.inverse();
+    Twist own;
+    own.head<3>().setConstant(kOwnSigma_m * kOwnSigma_m);
+    own.tail<3>().setConstant(kOwnSigma_rad * kOwnSigma_rad);
+    outcome.covariance = information.inverse() + Matrix6(own.asDiagonal());
   }
 
   SurfaceMap& map_;
