@@ -28,7 +28,7 @@ using Images = std::vector<std::vector<slam::Descriptor>>;
 struct TrainOptions {
   std::vector<std::string> captures;
   std::string out;
-  std::string preset = "full";
+  std::vector<std::string> presets = {"paper", "full"};
   int every = 5;
   slam::VocabularyOptions tree;
 };
@@ -66,17 +66,19 @@ void write_bytes(const std::filesystem::path& file, const std::vector<std::byte>
 }
 
 void train(const TrainOptions& options) {
-  const slam::SlamConfig config = slam::preset_config(options.preset);
   Images images;
   for (const std::string& capture : options.captures) {
     CaptureInput input;
     input.capture = capture;
-    const std::size_t scans = add_images(input, config, options.every, images);
+    std::size_t scans = 0;
+    for (const std::string& preset : options.presets) {
+      scans = add_images(input, slam::preset_config(preset), options.every, images);
+    }
     std::cout << fmt::format("{}: {} scans\n", capture, scans) << std::flush;
   }
   const slam::Vocabulary vocabulary = slam::train_vocabulary(images, options.tree);
   write_bytes(options.out, vocabulary.bytes());
-  std::cout << fmt::format("{} words from {} scans in {}, hash {:016x}\n", vocabulary.word_count(),
+  std::cout << fmt::format("{} words from {} images in {}, hash {:016x}\n", vocabulary.word_count(),
                            images.size(), options.out, vocabulary.hash());
 }
 
@@ -91,7 +93,7 @@ void add_train_vocabulary(CLI::App& app) {
                    "Captures or recordings, the metadata of each beside it")
       ->required();
   command->add_option("-o,--out", options->out, "File to write")->required();
-  command->add_option("--preset", options->preset, "Whose keypoints: paper or full")
+  command->add_option("--preset", options->presets, "Whose keypoints: paper, full or both")
       ->check(CLI::IsMember({"paper", "full"}))
       ->capture_default_str();
   command->add_option("--every", options->every, "Take each n-th scan")

@@ -112,52 +112,68 @@ int LoopDetector::streak_at(std::size_t entry) const {
 std::optional<LoopEdge> LoopDetector::verify() {
   const double path_m = places_.back().path_m;
   if (last_loop_ && path_m - last_loop_->current.path_m < kLoopEvery_m) return std::nullopt;
-  verified_.clear();
+  judged_.clear();
   for (const Region& region : regions_) {
     if (region.streak < kStreak) continue;
     if (candidates_.size() == kMostMatched) break;
     LoopCandidate& candidate = candidates_.emplace_back();
     candidate.similarity = region.similarity;
-    Verified found{candidates_.size() - 1, {}, {}};
-    if (verify(region.best, candidate, found)) verified_.push_back(found);
+    judge(region.best, candidate);
   }
-  if (verified_.empty()) return std::nullopt;
-  const Verified& best = verified_.front();
-  const auto contradicts = [&](const Verified& other) { return !agree(best.pair, other.pair); };
-  const auto refuse = [&](const char* reason) {
-    for (const Verified& found : verified_) candidates_[found.candidate].reason = reason;
-    return std::nullopt;
-  };
-  if (std::ranges::any_of(verified_, contradicts)) return refuse("another place fits as well");
-  evidence_.speak_for(best.pair);
+  const Judged* best = nullptr;
+  for (const Judged& judged : judged_) {
+    if (!judged.alike) {
+      evidence_.speak_against(judged.pair);
+    } else if (best == nullptr) {
+      best = &judged;
+    } else {
+      return refuse("another place fits as well");
+    }
+  }
+  if (best == nullptr) return std::nullopt;
+  evidence_.speak_for(best->pair);
   if (!evidence_.convincing()) return refuse("not yet borne out by other keyframes");
   if (last_loop_ && path_m - last_loop_->current.path_m < kLoopMemory_m &&
-      !agree(*last_loop_, best.pair)) {
+      !agree(*last_loop_, best->pair)) {
     return refuse("the loop before contradicts it");
   }
-  refuse("another keyframe of the same place is nearer");
-  candidates_[best.candidate].reason.clear();
-  candidates_[best.candidate].accepted = true;
-  last_loop_ = best.pair;
-  return best.edge;
+  candidates_[best->candidate].accepted = true;
+  last_loop_ = best->pair;
+  return best->edge;
 }
 
-bool LoopDetector::verify(std::size_t entry, LoopCandidate& candidate, Verified& found) {
+std::optional<LoopEdge> LoopDetector::refuse(const char* reason) {
+  for (const Judged& judged : judged_) {
+    if (judged.alike) candidates_[judged.candidate].reason = reason;
+  }
+  return std::nullopt;
+}
+
+void LoopDetector::judge(std::size_t entry, LoopCandidate& candidate) {
   const Place& older = places_[entry];
   const Place& current = places_.back();
   const Consensus start = verifier_.match(older, current, candidate);
-  if (!candidate.reason.empty()) return false;
-  if (!verifier_.registered(older, around(entry, kAround), current, start, candidate, found.edge)) {
-    return false;
+  if (!candidate.reason.empty()) return;
+  Judged found;
+  found.pair = {waypoint(older), waypoint(current), start.T_reference_current};
+  // A nearer one has been asked.
+  const auto same = [&](const Judged& judged) { return agree(judged.pair, found.pair); };
+  if (std::ranges::any_of(judged_, same)) {
+    candidate.reason = "another keyframe of the same place is more alike";
+    return;
   }
-  found.pair = {waypoint(older), waypoint(current), found.edge.T_from_to};
+  if (!verifier_.registered(older, around(entry, kAround), current, start, candidate, found.edge)) {
+    return;
+  }
+  found.candidate = candidates_.size() - 1;
+  found.pair.T_older_current = found.edge.T_from_to;
   if (!believable(found.edge, older, current)) {
     candidate.reason = "odometry does not err that far";
-  } else if (contradicted(entry, found.edge.T_from_to)) {
-    candidate.reason = "the places show different things";
-    evidence_.speak_against(found.pair);
+    return;
   }
-  return candidate.reason.empty();
+  found.alike = !contradicted(entry, found.edge.T_from_to);
+  if (!found.alike) candidate.reason = "the places show different things";
+  judged_.push_back(found);
 }
 
 bool LoopDetector::believable(const LoopEdge& edge, const Place& older,

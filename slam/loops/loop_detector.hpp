@@ -42,11 +42,12 @@ class LoopDetector {
     double similarity = 0.0;  ///< Relative to that of neighbouring keyframes.
     int streak = 1;           ///< Keyframes in a row that pointed here.
   };
-  /// A candidate that passed all that one keyframe can be asked.
-  struct Verified {
+  /// A candidate whose surfaces fit.
+  struct Judged {
     std::size_t candidate = 0;
     LoopEdge edge;
     PlacePair pair;
+    bool alike = false;  ///< Nothing shows that it is another place.
   };
 
   void append(const Keyframe& keyframe);
@@ -54,7 +55,8 @@ class LoopDetector {
   void propose(const BagOfWords& bag);
   [[nodiscard]] int streak_at(std::size_t entry) const;
   std::optional<LoopEdge> verify();
-  bool verify(std::size_t entry, LoopCandidate& candidate, Verified& found);
+  void judge(std::size_t entry, LoopCandidate& candidate);
+  std::optional<LoopEdge> refuse(const char* reason);
   [[nodiscard]] bool believable(const LoopEdge& edge, const Place& older,
                                 const Place& current) const;
   [[nodiscard]] bool contradicted(std::size_t entry, const Pose& T_older_current) const;
@@ -72,7 +74,7 @@ class LoopDetector {
   std::vector<Region> regions_;       ///< Of the current keyframe, the likeliest first.
   std::vector<Region> last_regions_;  ///< Of the one before.
   std::vector<LoopCandidate> candidates_;
-  std::vector<Verified> verified_;  ///< Of them; reused.
+  std::vector<Judged> judged_;  ///< Of the current keyframe; no two of them agree.
 };
 
 }  // namespace glint::slam

@@ -90,7 +90,7 @@ Keyframe TestGallery::look(const Pose& T_world_sensor, std::uint64_t id, double 
 void TestGallery::add_points(const Pose& T_world_sensor, Keyframe& keyframe) {
   const Pose T_sensor_world = T_world_sensor.inverse();
   const double middle_y = kApart_m * std::round(T_world_sensor.translation_m.y() / kApart_m);
-  for (int i = 0; i < 6000; ++i) {
+  for (int i = 0; i < 4000; ++i) {
     const double x_m = T_world_sensor.translation_m.x() + uniform(-10.0, 10.0);
     Eigen::Vector3d at_m(x_m, middle_y, 0.0);
     switch (random_() % 4) {
@@ -114,11 +114,11 @@ void TestGallery::add_points(const Pose& T_world_sensor, Keyframe& keyframe) {
 Vocabulary TestGallery::vocabulary() {
   std::vector<std::vector<Descriptor>> images;
   for (int gallery = 0; gallery < galleries_; ++gallery) {
-    for (double x_m = 0.0; x_m < kLength_m; x_m += 1.0) {
+    for (double x_m = 0.0; x_m < kLength_m; x_m += 2.0) {
       images.push_back(look(gallery_pose(x_m, 0.0, 0.0, gallery), 0, 0.0).features.descriptors);
     }
   }
-  return train_vocabulary(images, {.branching = 10, .depth = 3});
+  return train_vocabulary(images, {.branching = 10, .depth = 3, .rounds = 4});
 }
 
 }  // namespace glint::slam
