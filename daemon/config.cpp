@@ -168,7 +168,11 @@ constexpr std::array kKeys{
     ConfigKey{"slam.keyframe_min_matches", &at<&Config::slam, &SlamConfig::keyframe_min_matches>, 0,
               10000, "", "", "A keyframe is made when fewer matches remain."},
     ConfigKey{"slam.loops", &at<&Config::slam, &SlamConfig::loops>, 0, 0, "", "",
-              "Places seen before close loops."},
+              "Places seen again are recognised and correct the map."},
+    ConfigKey{
+        "slam.vocabulary", &at<&Config::slam, &SlamConfig::vocabulary>, 0, 0, "", "",
+        "File of the visual words that recognise them, see glint train-vocabulary. Empty: the "
+        "built-in one."},
     ConfigKey{"slam.map_voxel_m", &at<&Config::slam, &SlamConfig::map_voxel_m>, 0, 10, "m", "",
               "Edge of the map's voxels, one point is kept in each. 0: by the first scan's median "
               "range."},

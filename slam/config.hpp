@@ -75,13 +75,16 @@ struct SlamConfig {
   /// Most times that associations are made anew for a scan.
   int map_rounds = 4;
 
-  /// Places seen before close loops.
-  bool loops = true;
-
   /// A keyframe is made after this distance (m), angle (rad), or when fewer matches remain.
   double keyframe_distance_m = 0.5;
   double keyframe_angle_rad = 0.26;
   int keyframe_min_matches = 60;
+
+  /// Places seen again are recognised and correct the map.
+  bool loops = true;
+  /// File of the vocabulary that recognises them, see `glint train-vocabulary`; empty: the built-in
+  /// one.
+  std::string vocabulary;
 
   /// Edge of the map's voxels, m: one point is kept in each. 0: a fortieth of the first keyframe's
   /// median range, between 0.05 and 0.5 m, so that rooms and streets need no setting.

@@ -24,6 +24,7 @@
 #include "daemon/replay_pacer.hpp"
 #include "daemon/version.hpp"
 #include "pcap/pcap_source.hpp"
+#include "slam/loops/loops_by_appearance.hpp"
 
 namespace glint::cli {
 namespace {
@@ -234,6 +235,7 @@ void run(const ReplayCommand& command) {
   }
   ReplayOptions options;
   options.slam = config.slam;
+  options.loops = slam::loops_by_appearance(config.slam);
   options.R_base_sensor = config.mount.T_base_sensor.rotation;
   options.session_file = command.out / "session.glint";
   options.max_scans = command.frames;
