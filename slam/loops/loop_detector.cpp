@@ -30,8 +30,6 @@ constexpr std::size_t kAround = 5;
 constexpr std::size_t kBeside = 2;
 // A loop says most of what those just after it would.
 constexpr double kLoopEvery_m = 1.0;
-// Over so long a way the last loop says where others can be.
-constexpr double kLoopMemory_m = 30.0;
 // What odometry may have erred by.
 constexpr double kMostDrift_m = 15.0;
 constexpr double kMostDriftShare = 0.05;
@@ -111,7 +109,8 @@ int LoopDetector::streak_at(std::size_t entry) const {
 
 std::optional<LoopEdge> LoopDetector::verify() {
   const double path_m = places_.back().path_m;
-  if (last_loop_ && path_m - last_loop_->current.path_m < kLoopEvery_m) return std::nullopt;
+  const std::vector<PlacePair>& loops = evidence_.loops();
+  if (!loops.empty() && path_m - loops.back().current.path_m < kLoopEvery_m) return std::nullopt;
   judged_.clear();
   for (const Region& region : regions_) {
     if (region.streak < kStreak) continue;
@@ -120,32 +119,37 @@ std::optional<LoopEdge> LoopDetector::verify() {
     candidate.similarity = region.similarity;
     judge(region.best, candidate);
   }
-  const Judged* best = nullptr;
   for (const Judged& judged : judged_) {
-    if (!judged.alike) {
-      evidence_.speak_against(judged.pair);
-    } else if (best == nullptr) {
-      best = &judged;
-    } else {
-      return refuse("another place fits as well");
-    }
+    if (!judged.alike) evidence_.speak_against(judged.pair);
   }
-  if (best == nullptr) return std::nullopt;
+  std::erase_if(judged_, [](const Judged& judged) { return !judged.alike; });
+  if (judged_.empty()) return std::nullopt;
+  const Judged* const best = choose();
+  if (best == nullptr) return refuse("another place fits as well");
   evidence_.speak_for(best->pair);
-  if (!evidence_.convincing()) return refuse("not yet borne out by other keyframes");
-  if (last_loop_ && path_m - last_loop_->current.path_m < kLoopMemory_m &&
-      !agree(*last_loop_, best->pair)) {
-    return refuse("the loop before contradicts it");
-  }
+  if (!evidence_.convincing(best->pair)) return refuse("not yet borne out by other keyframes");
+  if (evidence_.foreseen(best->pair) == false) return refuse("the loop before contradicts it");
+  refuse("another place goes better with the loop before");
+  candidates_[best->candidate].reason.clear();
   candidates_[best->candidate].accepted = true;
-  last_loop_ = best->pair;
+  evidence_.believe(best->pair);
   return best->edge;
 }
 
-std::optional<LoopEdge> LoopDetector::refuse(const char* reason) {
+// The only one, or the only one that the loop before foresaw.
+const LoopDetector::Judged* LoopDetector::choose() const {
+  if (judged_.size() == 1) return judged_.data();
+  const Judged* chosen = nullptr;
   for (const Judged& judged : judged_) {
-    if (judged.alike) candidates_[judged.candidate].reason = reason;
+    if (evidence_.foreseen(judged.pair) != true) continue;
+    if (chosen != nullptr) return nullptr;
+    chosen = &judged;
   }
+  return chosen;
+}
+
+std::optional<LoopEdge> LoopDetector::refuse(const char* reason) {
+  for (const Judged& judged : judged_) candidates_[judged.candidate].reason = reason;
   return std::nullopt;
 }
 
@@ -157,7 +161,7 @@ void LoopDetector::judge(std::size_t entry, LoopCandidate& candidate) {
   Judged found;
   found.pair = {waypoint(older), waypoint(current), start.T_reference_current};
   // A nearer one has been asked.
-  const auto same = [&](const Judged& judged) { return agree(judged.pair, found.pair); };
+  const auto same = [&](const Judged& judged) { return evidence_.agree(judged.pair, found.pair); };
   if (std::ranges::any_of(judged_, same)) {
     candidate.reason = "another keyframe of the same place is more alike";
     return;

@@ -56,6 +56,7 @@ class LoopDetector {
   [[nodiscard]] int streak_at(std::size_t entry) const;
   std::optional<LoopEdge> verify();
   void judge(std::size_t entry, LoopCandidate& candidate);
+  [[nodiscard]] const Judged* choose() const;
   std::optional<LoopEdge> refuse(const char* reason);
   [[nodiscard]] bool believable(const LoopEdge& edge, const Place& older,
                                 const Place& current) const;
@@ -70,7 +71,6 @@ class LoopDetector {
   BagOfWords last_bag_;
   std::size_t aged_ = 0;  ///< Places before this one are old enough to be found again.
   LoopEvidence evidence_;
-  std::optional<PlacePair> last_loop_;
   std::vector<Region> regions_;       ///< Of the current keyframe, the likeliest first.
   std::vector<Region> last_regions_;  ///< Of the one before.
   std::vector<LoopCandidate> candidates_;

@@ -19,17 +19,39 @@ constexpr int kEnough = 4;
 constexpr double kEnoughWay_m = 1.5;
 constexpr int kWorst = -4;
 
-}  // namespace
+// A loop tells of keyframes within this way of its own.
+constexpr double kLoopReach_m = 15.0;
+// Over so long a way the last loop says where others can be.
+constexpr double kLoopMemory_m = 30.0;
 
-bool agree(const PlacePair& a, const PlacePair& b) {
+double way_between(const PlacePair& a, const PlacePair& b) {
+  return std::abs(a.older.path_m - b.older.path_m) + std::abs(a.current.path_m - b.current.path_m);
+}
+
+bool agree_by_odometry(const PlacePair& a, const PlacePair& b) {
   if (a.older.segment != b.older.segment || a.current.segment != b.current.segment) return false;
   const Pose T_older = a.older.T_odom_sensor.inverse() * b.older.T_odom_sensor;
   const Pose T_current = a.current.T_odom_sensor.inverse() * b.current.T_odom_sensor;
   const Pose apart = (a.T_older_current * T_current).inverse() * (T_older * b.T_older_current);
-  const double way_m =
-      std::abs(a.older.path_m - b.older.path_m) + std::abs(a.current.path_m - b.current.path_m);
+  const double way_m = way_between(a, b);
   return apart.translation_m.norm() < kApart_m + kApartShare * way_m &&
          so3_log(apart.rotation).norm() < kApart_rad + kApart_rad_per_m * way_m;
+}
+
+}  // namespace
+
+bool LoopEvidence::agree(const PlacePair& a, const PlacePair& b) const {
+  if (agree_by_odometry(a, b)) return true;
+  // What the two say of the older keyframes.
+  const bool in_order = a.older.path_m < b.older.path_m;
+  const PlacePair& first = in_order ? a : b;
+  const PlacePair& second = in_order ? b : a;
+  const Pose T_current = first.current.T_odom_sensor.inverse() * second.current.T_odom_sensor;
+  const PlacePair between{first.older, second.older,
+                          first.T_older_current * T_current * second.T_older_current.inverse()};
+  return std::ranges::any_of(loops_, [&](const PlacePair& loop) {
+    return way_between(loop, between) < kLoopReach_m && agree_by_odometry(loop, between);
+  });
 }
 
 bool LoopEvidence::about(const PlacePair& pair) const {
@@ -56,8 +78,15 @@ void LoopEvidence::speak_against(const PlacePair& pair) {
   last_ = pair;
 }
 
-bool LoopEvidence::convincing() const {
-  return balance_ >= kEnough && last_->current.path_m - since_m_ >= kEnoughWay_m;
+bool LoopEvidence::convincing(const PlacePair& pair) const {
+  return balance_ >= kEnough && pair.current.path_m - since_m_ >= kEnoughWay_m;
+}
+
+std::optional<bool> LoopEvidence::foreseen(const PlacePair& pair) const {
+  if (loops_.empty() || pair.current.path_m - loops_.back().current.path_m > kLoopMemory_m) {
+    return std::nullopt;
+  }
+  return agree(loops_.back(), pair);
 }
 
 }  // namespace glint::slam
