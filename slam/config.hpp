@@ -55,6 +55,8 @@ struct SlamConfig {
   bool planes = true;
   bool ground = true;
   bool ba = true;
+  /// Places seen before close loops.
+  bool loops = true;
   /// Height of the sensor above the ground, m; 0 (auto): that of the dominant low plane.
   double sensor_height_m = 0.0;
   /// Weight of the ground's residuals to those of other surfaces.
@@ -71,9 +73,6 @@ struct SlamConfig {
   double ba_weight = 1.0;
   /// Most times that associations are made anew for a scan.
   int map_rounds = 4;
-
-  /// Places seen before close loops.
-  bool loops = true;
 
   /// A keyframe is made after this distance (m), angle (rad), or when fewer matches remain.
   double keyframe_distance_m = 0.5;
