@@ -58,6 +58,8 @@ struct SlamConfig {
   bool planes = true;
   bool ground = true;
   bool ba = true;
+  /// Places seen again are recognised and correct the map.
+  bool loops = true;
   /// Height of the sensor above the ground, m; 0 (auto): that of the dominant low plane.
   double sensor_height_m = 0.0;
   /// Weight of the ground's residuals to those of other surfaces.
@@ -80,10 +82,8 @@ struct SlamConfig {
   double keyframe_angle_rad = 0.26;
   int keyframe_min_matches = 60;
 
-  /// Places seen again are recognised and correct the map.
-  bool loops = true;
-  /// File of the vocabulary that recognises them, see `glint train-vocabulary`; empty: the built-in
-  /// one.
+  /// File of the vocabulary that recognises places seen again, see `glint train-vocabulary`; empty:
+  /// the built-in one.
   std::string vocabulary;
 
   /// Edge of the map's voxels, m: one point is kept in each. 0: a fortieth of the first keyframe's
