@@ -2,6 +2,10 @@
 // Copyright 2026 The Glint Authors
 #include "daemon/backend_thread.hpp"
 
+#include <utility>
+
+#include "daemon/protocol_pose.hpp"
+
 namespace glint::daemon {
 namespace {
 
@@ -10,10 +14,12 @@ constexpr std::chrono::milliseconds kWait{100};
 }  // namespace
 
 BackendThread::BackendThread(const Config& config, const std::filesystem::path& session_file,
-                             Crossings& crossings, Heartbeat& heartbeat)
+                             slam::LoopSource loops, Crossings& crossings, Heartbeat& heartbeat,
+                             EventLog& events)
     : crossings_(crossings),
       heartbeat_(heartbeat),
-      backend_(config.slam, session_file, stage_clock()) {
+      events_(events),
+      backend_(config.slam, session_file, stage_clock(), std::move(loops)) {
   publish();
 }
 
@@ -27,6 +33,10 @@ void BackendThread::run() {
     look_at_sensor();
     if (result == PopResult::kItem) process(keyframe);
   }
+  const std::uint32_t epoch = backend_.correction().epoch;
+  backend_.finish();
+  tell(epoch);
+  correct_last_snapshot();
   heartbeat_.finish();
 }
 
@@ -40,9 +50,41 @@ void BackendThread::look_at_sensor() {
 void BackendThread::process(const slam::Keyframe& keyframe) {
   const std::uint32_t epoch = backend_.correction().epoch;
   backend_.process(keyframe);
-  duration_.add(backend_.last_wall_ns());
+  const auto wall_ns = [&](slam::Stage stage) {
+    return backend_.stage_times().wall_ns[static_cast<std::size_t>(stage)];
+  };
+  duration_.add(wall_ns(slam::Stage::kBackend));
+  pgo_duration_.add(wall_ns(slam::Stage::kPgo));
+  tell(epoch);
+}
+
+// Odometry has ended, and what it was told last it may not have seen.
+void BackendThread::correct_last_snapshot() {
+  const std::shared_ptr<const Snapshot> last = crossings_.snapshot.load();
+  if (last->correction.epoch == backend_.correction().epoch) return;
+  auto corrected = std::make_shared<Snapshot>(*last);
+  corrected->correction = backend_.correction();
+  crossings_.snapshot.store(corrected);
+  events_.post({"epoch", 0, epoch_json(*corrected)});
+}
+
+void BackendThread::tell(std::uint32_t epoch_before) {
   publish();
-  if (backend_.correction().epoch != epoch) crossings_.commands.post(backend_.correction());
+  for (const slam::LoopReport& report : backend_.loop_reports()) {
+    Json fields = Json::object();
+    put_time(fields, report.stamp);
+    fields.update(slam::to_json(report));
+    events_.post({"loop", 0, std::move(fields)});
+  }
+  if (backend_.correction().epoch == epoch_before) return;
+  crossings_.commands.post(backend_.correction());
+  const slam::MapSnapshot& map = *backend_.snapshot();
+  events_.post({"map",
+                0,
+                {{"map_epoch", map.epoch},
+                 {"revision", map.revision},
+                 {"points", map.point_count},
+                 {"keyframes", map.keyframe_count}}});
 }
 
 void BackendThread::publish() {
@@ -50,6 +92,9 @@ void BackendThread::publish() {
   state->map = backend_.snapshot();
   if (state->map == nullptr) state->map = std::make_shared<const slam::MapSnapshot>();
   state->backend = duration_;
+  state->pgo = pgo_duration_;
+  state->loops_accepted = backend_.loops_accepted();
+  state->loops_rejected = backend_.loops_rejected();
   state->store_failures = backend_.store_failures();
   state->store_error = backend_.store_error();
   crossings_.map.store(std::move(state));

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "driver/core/sensor_info.hpp"
-#include "slam/backend.hpp"
+#include "slam/map_correction.hpp"
 
 namespace glint::daemon {
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <map>
 
 #include "daemon/test_daemon.hpp"
 #include "driver/core/scan_assembler.hpp"
@@ -148,6 +149,73 @@ TEST(DaemonTest, TheMapHasThePointsThatStatusSays) {
     params["cursor"] = page["next_cursor"];
   }
   EXPECT_EQ(got, points);
+}
+
+/// One loop, at the second keyframe, which says that it is half a metre further and a little
+/// turned.
+slam::LoopSource loop_at_second_keyframe() {
+  return [](const slam::Keyframe& keyframe) {
+    slam::LoopSearch found;
+    if (keyframe.id != 1) return found;
+    const Pose seen{so3_exp({0.0, 0.0, 0.1}), {1.0, 0.0, 0.0}};
+    found.edge = slam::LoopEdge{0, 1, seen, Eigen::Matrix<double, 6, 6>::Identity() * 1e-6};
+    return found;
+  };
+}
+
+TEST(DaemonTest, ALoopMovesTheMapFrameWithItsEpochAndLeavesTheOdometryFrame) {
+  constexpr int kScans = 16;  // a keyframe each half metre, which is each tenth scan
+  RuntimeOptions options;
+  options.loops = loop_at_second_keyframe();
+  TestDaemon daemon({}, options);
+  const auto packets = room_packets(daemon.info(), kScans);
+  const auto expected = replay(daemon.info(), packets);
+  Client client(daemon.address());
+  client.call("subscribe", {{"topics", {"events"}}});
+  daemon.feed(packets);
+
+  std::map<std::string, Json> events;
+  while (!events.contains("epoch")) {
+    const Json event = client.next_message(10s)["params"];
+    events[event["kind"].get<std::string>()] = event;
+  }
+  EXPECT_EQ(events["epoch"]["map_epoch"], 1);
+  ASSERT_TRUE(events.contains("loop"));
+  EXPECT_EQ(events["loop"]["from"], 0);
+  EXPECT_EQ(events["loop"]["to"], 1);
+  EXPECT_EQ(events["loop"]["accepted"], true);
+  EXPECT_GT(events["loop"]["largest_correction_m"], 0.2);
+  EXPECT_LT(events["loop"]["residual_after"]["distance_m"],
+            events["loop"]["residual_before"]["distance_m"]);
+  ASSERT_TRUE(events.contains("map"));
+  EXPECT_EQ(events["map"]["map_epoch"], 1);
+
+  ASSERT_TRUE(daemon.wait_for("get_status", [](const Json& s) { return has_poses(s, kScans); }));
+  Client reader(daemon.address());
+  EXPECT_EQ(reader.hello()["map_epoch"], 1);
+  const Json odom = reader.call("get_pose", {{"frame", "odom"}});
+  const Json map = reader.call("get_pose", {{"frame", "map"}});
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(odom["p_m"][i].get<double>(),
+              expected.back().T_odom_sensor.translation_m[static_cast<Eigen::Index>(i)]);
+  }
+  EXPECT_GT(map["p_m"][0].get<double>(), odom["p_m"][0].get<double>() + 0.2);
+  EXPECT_EQ(map["map_epoch"], 1);
+  EXPECT_EQ(reader.call("get_map")["map_epoch"], 1);
+  EXPECT_EQ(reader.call("get_status")["counters"]["loops_accepted"], 1);
+
+  // The path to the first keyframe stays, that to the second is drawn out, and nothing jumps.
+  const Json path = reader.call("get_trajectory")["poses"];
+  ASSERT_EQ(path.size(), static_cast<std::size_t>(kScans));
+  EXPECT_NEAR(path[0]["p_m"][0].get<double>(), 0.0, 1e-9);
+  double largest_step_m = 0.0;
+  for (std::size_t k = 1; k < path.size(); ++k) {
+    const double step_m = path[k]["p_m"][0].get<double>() - path[k - 1]["p_m"][0].get<double>();
+    largest_step_m = std::max(largest_step_m, step_m);
+  }
+  EXPECT_LT(largest_step_m, 0.15);
+  EXPECT_EQ(reader.call("get_pose", {{"at", path[5]["t"]}})["p_m"], path[5]["p_m"]);
+  EXPECT_EQ(path[kScans - 1]["p_m"], map["p_m"]);
 }
 
 TEST(DaemonTest, PauseHoldsThePoseAndResumeGoesOn) {

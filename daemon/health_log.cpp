@@ -26,6 +26,11 @@ void HealthLog::look(const RuntimeStatus& status, std::int64_t now_ns,
     tracking_ = tracking;
     spdlog::info("tracking: {}", slam::to_string(tracking));
   }
+  if (status.map->map->epoch != map_epoch_ && limiter_.allow("epoch", now_ns)) {
+    map_epoch_ = status.map->map->epoch;
+    spdlog::info("the map was corrected: epoch {}, {} loops closed, {} candidates refused",
+                 map_epoch_, status.map->loops_accepted, status.map->loops_rejected);
+  }
   const AssemblerCounters& packets = status.snapshot->packets;
   look_at_refusals(status, packets.bad_size + packets.bad_serial + status.snapshot->early_packets,
                    now_ns);

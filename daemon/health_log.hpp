@@ -31,6 +31,7 @@ class HealthLog {
   std::uint64_t refused_ = 0;
   bool tilt_told_ = false;
   SourceState source_ = SourceState::kWaiting;
+  std::uint32_t map_epoch_ = 0;
   slam::TrackingState tracking_ = slam::TrackingState::kInit;
 };
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "daemon/protocol.hpp"
+#include "daemon/protocol_pose.hpp"
 #include "daemon/sensor_change.hpp"
 #include "driver/core/packet_view.hpp"
 
@@ -180,7 +181,8 @@ void OdometryThread::process(const LidarScan& scan) {
   }
   state_.stages[slam::Stage::kDecode].add(std::exchange(decode_ns_, 0));
   state_.history.append({estimate.stamp, estimate.T_odom_sensor, estimate.velocity, estimate.state,
-                         estimate.segment, estimate.frame_id, state_.host_time,
+                         estimate.segment, estimate.frame_id,
+                         static_cast<double>(estimate.sequence), state_.host_time,
                          state_.clock.sigma_ns});
   state_.estimate = estimate;
   state_.arrival_ns = last_arrival_ns_;
@@ -219,7 +221,11 @@ void OdometryThread::apply_commands() {
                           [&](const slam::MapCorrection& c) { state_.correction = c; }},
                command);
   }
-  if (!commands.empty()) publish();
+  if (commands.empty()) return;
+  const std::uint32_t epoch = crossings_.snapshot.load()->correction.epoch;
+  publish();
+  // Only now does whoever asks for a pose get one of the new epoch.
+  if (state_.correction.epoch != epoch) events_.post({"epoch", 0, epoch_json(state_)});
 }
 
 void OdometryThread::use_sensor(const UseSensorCommand& use) {

@@ -125,6 +125,16 @@ Json points_json(const std::vector<slam::MapPoint>& points, bool base64) {
   return out;
 }
 
+/// Tiles that the asker may know and that are no more; all of them on the first page.
+Json removed_json(const MapQuery& query, const slam::MapSnapshot& map) {
+  Json out = Json::array();
+  if (query.cursor || query.since_revision == 0) return out;
+  for (const slam::RemovedTile& tile : map.removed) {
+    if (tile.revision > query.since_revision) out.push_back(tile.index);
+  }
+  return out;
+}
+
 }  // namespace
 
 MapQuery parse_map_query(const Json& params) {
@@ -149,6 +159,10 @@ MapQuery parse_map_query(const Json& params) {
 Json map_page(const MapQuery& query, const slam::MapSnapshot& map) {
   MapCursor at =
       query.cursor.value_or(MapCursor{map.revision, {INT32_MIN, INT32_MIN, INT32_MIN}, 0});
+  if (at.revision < map.moved_revision) {
+    throw RpcError(kOutOfRange, "the map was corrected since the first page; ask without cursor",
+                   "cursor");
+  }
   const std::size_t point_bytes = query.base64 ? kBase64PointBytes : kJsonPointBytes;
   std::size_t room = kPageBytes;
   std::optional<MapCursor> next;
@@ -178,11 +192,12 @@ Json map_page(const MapQuery& query, const slam::MapSnapshot& map) {
   }
 
   Json out{{"frame", "map"},
+           {"map_epoch", map.epoch},
            {"revision", at.revision},
            {"tile_m", slam::kMapTile_m},
            {"encoding", query.base64 ? "base64" : "json"},
            {"tiles", std::move(tiles)},
-           {"removed", Json::array()}};
+           {"removed", removed_json(query, map)}};
   if (next) out["next_cursor"] = cursor_text(*next);
   return out;
 }

@@ -28,8 +28,9 @@ struct MapQuery {
 /// @throws RpcError.
 MapQuery parse_map_query(const Json& params);
 
-/// One page: as many tiles, and points of the last one, as a line holds. Tiles only ever gain
-/// points while a client pages, so that no page misses or repeats one.
+/// One page: as many tiles, and points of the last one, as a line holds. Tiles only gain points
+/// while a client pages, so that no page misses or repeats one; a cursor from before a correction
+/// of the map, which moves all, is refused. @throws RpcError.
 Json map_page(const MapQuery& query, const slam::MapSnapshot& map);
 
 }  // namespace glint::daemon

@@ -117,6 +117,26 @@ TEST_F(MapPageTest, TheRevisionIsThatOfTheFirstPage) {
   EXPECT_EQ(second["revision"], 3);
 }
 
+TEST_F(MapPageTest, ACursorFromBeforeACorrectionIsRefused) {
+  fill(3, 70'000);
+  const Json first = map_page(parse_map_query(Json::object()), map_);
+  map_.moved_revision = ++map_.revision;
+  try {
+    map_page(parse_map_query({{"cursor", first["next_cursor"]}}), map_);
+    FAIL() << "pages of two maps were mixed";
+  } catch (const RpcError& error) {
+    EXPECT_EQ(error.to_json()["data"]["code"], "OUT_OF_RANGE");
+  }
+}
+
+TEST_F(MapPageTest, TilesThatAreNoMoreAreListedForWhoMayKnowThem) {
+  fill(3, 10);
+  map_.removed.push_back({{9, 0, 0}, 2});
+  EXPECT_EQ(map_page(parse_map_query({{"since_revision", 1}}), map_)["removed"], Json({{9, 0, 0}}));
+  EXPECT_TRUE(map_page(parse_map_query({{"since_revision", 2}}), map_)["removed"].empty());
+  EXPECT_TRUE(map_page(parse_map_query(Json::object()), map_)["removed"].empty());
+}
+
 TEST_F(MapPageTest, JsonPointsAreNumbers) {
   fill(1, 3);
   const Json page = map_page(parse_map_query({{"encoding", "json"}}), map_);

@@ -13,19 +13,6 @@ constexpr double kMaxPredictionMs = 200.0;
 
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-/// Takes twists of the sensor to those of a body that is rigidly fixed to it (translation first).
-Matrix6d adjoint(const Pose& T_body_sensor) {
-  const Eigen::Matrix3d r = T_body_sensor.rotation.toRotationMatrix();
-  const Eigen::Vector3d& p = T_body_sensor.translation_m;
-  Eigen::Matrix3d skew;
-  skew << 0, -p.z(), p.y(), p.z(), 0, -p.x(), -p.y(), p.x(), 0;
-  Matrix6d out = Matrix6d::Zero();
-  out.topLeftCorner<3, 3>() = r;
-  out.topRightCorner<3, 3>() = skew * r;
-  out.bottomRightCorner<3, 3>() = r;
-  return out;
-}
-
 Json vector_json(const Eigen::Vector3d& v) { return Json{v.x(), v.y(), v.z()}; }
 
 void put_velocity(Json& out, Twist velocity, PoseFrames frames, const PoseContext& context) {
@@ -45,11 +32,11 @@ void put_covariance(Json& out, Matrix6d covariance, PoseFrames frames, const Pos
   out["cov"] = std::move(cov);
 }
 
-void put_map_correction(Json& out, const slam::MapCorrection& correction) {
-  Json T_map_odom = Json::object();
-  put_pose(T_map_odom, correction.T_map_odom);
-  out["T_map_odom"] = std::move(T_map_odom);
-  out["map_epoch"] = correction.epoch;
+void put_map_correction(Json& out, const Pose& T_map_odom, std::uint32_t epoch) {
+  Json pose = Json::object();
+  put_pose(pose, T_map_odom);
+  out["T_map_odom"] = std::move(pose);
+  out["map_epoch"] = epoch;
 }
 
 /// The members that every message about a pose begins with.
@@ -58,6 +45,13 @@ Json head_json(slam::TrackingState state, PoseFrames frames) {
               {"state", slam::to_string(state)},
               {"frame", frames.map ? "map" : "odom"},
               {"child", frames.base ? "base" : "sensor"}};
+}
+
+/// As pose_in_frames, for a pose that the newest correction holds for.
+Pose newest_in_frames(const Pose& T_odom_sensor, const Snapshot& snapshot, PoseFrames frames,
+                      const PoseContext& context) {
+  return pose_in_frames(T_odom_sensor, snapshot.correction.T_map_odom * T_odom_sensor, frames,
+                        context);
 }
 
 /// What the time of a pose is worth: where it comes from, and when it was on this machine.
@@ -88,9 +82,14 @@ Json past_pose_json(const Snapshot& snapshot, SensorTime stamp, PoseFrames frame
   Json out = head_json(record->state, frames);
   put_time(out, stamp);
   put_clock(out, snapshot.clock_source, record->host_time, record->clock_sigma_ns);
-  put_pose(out, pose_in_frames(record->T_odom_sensor, frames, snapshot.correction, context));
+  const slam::MapCorrection& correction = snapshot.correction;
+  const Pose& T_odom_sensor = record->T_odom_sensor;
+  const Pose T_map_sensor = correction.map_pose(record->segment, record->sequence, T_odom_sensor);
+  put_pose(out, pose_in_frames(T_odom_sensor, T_map_sensor, frames, context));
   put_velocity(out, record->velocity, frames, context);
-  put_map_correction(out, snapshot.correction);
+  const Pose T_map_odom =
+      correction.anchors ? T_map_sensor * T_odom_sensor.inverse() : correction.T_map_odom;
+  put_map_correction(out, T_map_odom, correction.epoch);
   out["interpolated"] = true;
   return out;
 }
@@ -102,10 +101,9 @@ PoseFrames pose_frames(const Json& params) {
           choice_param(params, "child", "sensor|base") == "base"};
 }
 
-Pose pose_in_frames(const Pose& T_odom_sensor, PoseFrames frames, const slam::MapCorrection& map,
+Pose pose_in_frames(const Pose& T_odom_sensor, const Pose& T_map_sensor, PoseFrames frames,
                     const PoseContext& context) {
-  Pose pose = T_odom_sensor;
-  if (frames.map) pose = map.T_map_odom * pose;
+  Pose pose = frames.map ? T_map_sensor : T_odom_sensor;
   if (frames.base) pose = pose * context.T_base_sensor.inverse();
   return pose;
 }
@@ -114,6 +112,13 @@ void put_pose(Json& out, const Pose& pose) {
   const Eigen::Quaterniond& q = pose.rotation;
   out["p_m"] = vector_json(pose.translation_m);
   out["q_xyzw"] = Json{q.x(), q.y(), q.z(), q.w()};
+}
+
+Json epoch_json(const Snapshot& snapshot) {
+  Json out = Json::object();
+  if (snapshot.estimate) put_time(out, snapshot.estimate->stamp);
+  put_map_correction(out, snapshot.correction.T_map_odom, snapshot.correction.epoch);
+  return out;
 }
 
 Json newest_pose_json(const Snapshot& snapshot, PoseFrames frames, const PoseContext& context,
@@ -125,10 +130,10 @@ Json newest_pose_json(const Snapshot& snapshot, PoseFrames frames, const PoseCon
   put_clock(out, snapshot.clock_source, snapshot.host_time, snapshot.clock.sigma_ns);
   out["age_ms"] = static_cast<double>(now_ns - snapshot.arrival_ns) * 1e-6;
   out["stale"] = is_stale(snapshot, now_ns, context.scan_period_ns);
-  put_pose(out, pose_in_frames(estimate.T_odom_sensor, frames, snapshot.correction, context));
+  put_pose(out, newest_in_frames(estimate.T_odom_sensor, snapshot, frames, context));
   put_velocity(out, estimate.velocity, frames, context);
   put_covariance(out, estimate.covariance, frames, context);
-  put_map_correction(out, snapshot.correction);
+  put_map_correction(out, snapshot.correction.T_map_odom, snapshot.correction.epoch);
   out["frame_id"] = estimate.frame_id;
   out["segment"] = estimate.segment;
   out["completeness"] = estimate.completeness;
@@ -152,7 +157,7 @@ Json get_pose(const Json& params, const Snapshot& snapshot, const PoseContext& c
   const std::int64_t ahead_ns = std::llround(predict_ms * 1e6);
   put_time(out, estimate.stamp + ahead_ns);
   if (out.contains("t_host_ns")) out["t_host_ns"] = snapshot.host_time.ns + ahead_ns;
-  put_pose(out, pose_in_frames(predicted, frames, snapshot.correction, context));
+  put_pose(out, newest_in_frames(predicted, snapshot, frames, context));
   out.erase("cov");  // That of the newest pose says nothing about what came after it.
   out["predicted_ms"] = predict_ms;
   return out;

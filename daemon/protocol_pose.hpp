@@ -24,13 +24,16 @@ struct PoseContext {
 /// Reads `frame` (map|odom) and `child` (sensor|base). @throws RpcError.
 PoseFrames pose_frames(const Json& params);
 
-/// The pose of the child in the frame, given that of the sensor in the odometry frame. For frame
-/// odom and child sensor it is the very same bits.
-Pose pose_in_frames(const Pose& T_odom_sensor, PoseFrames frames, const slam::MapCorrection& map,
+/// The pose of the child in the frame, given that of the sensor in either. For child sensor it is
+/// the very same bits.
+Pose pose_in_frames(const Pose& T_odom_sensor, const Pose& T_map_sensor, PoseFrames frames,
                     const PoseContext& context);
 
 // Puts p_m and q_xyzw in.
 void put_pose(Json& out, const Pose& pose);
+
+/// What the event `epoch` tells: the correction of the map that came into force.
+Json epoch_json(const Snapshot& snapshot);
 
 /// The newest pose, as get_pose and the pose notification tell it. `now_ns`: steady clock.
 Json newest_pose_json(const Snapshot& snapshot, PoseFrames frames, const PoseContext& context,

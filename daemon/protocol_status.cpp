@@ -56,7 +56,9 @@ Json counters_json(const RuntimeStatus& runtime) {
               {"paused_scans", snapshot.paused_scans},
               {"poses", snapshot.scans},
               {"dropped_keyframes", snapshot.dropped_keyframes},
-              {"store_failures", runtime.map->store_failures}};
+              {"store_failures", runtime.map->store_failures},
+              {"loops_accepted", runtime.map->loops_accepted},
+              {"loops_rejected", runtime.map->loops_rejected}};
 }
 
 Json duration_json(const DurationStats& stats) {
@@ -70,6 +72,7 @@ Json duration_json(const DurationStats& stats) {
 Json stages_json(const RuntimeStatus& runtime) {
   StageStats stats = runtime.snapshot->stages;
   stats[slam::Stage::kBackend] = runtime.map->backend;
+  stats[slam::Stage::kPgo] = runtime.map->pgo;
   Json out = Json::object();
   for (std::size_t i = 0; i < slam::kStageCount; ++i) {
     if (stats.stages[i].count == 0) continue;

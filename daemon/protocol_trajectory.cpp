@@ -45,7 +45,9 @@ Json get_trajectory(const Json& params, const Snapshot& snapshot, const PoseCont
     pose["state"] = slam::to_string(record.state);
     pose["frame_id"] = record.frame_id;
     pose["segment"] = record.segment;
-    put_pose(pose, pose_in_frames(record.T_odom_sensor, frames, snapshot.correction, context));
+    const Pose T_map_sensor =
+        snapshot.correction.map_pose(record.segment, record.sequence, record.T_odom_sensor);
+    put_pose(pose, pose_in_frames(record.T_odom_sensor, T_map_sensor, frames, context));
     poses.push_back(std::move(pose));
   }
 

@@ -27,6 +27,8 @@ struct RuntimeOptions {
   bool lossless = false;
   std::filesystem::path session_file;  ///< Empty: no session is kept.
   std::string source_name;             ///< For status: "udp:7502", "pcap:drive.pcap".
+  /// Finds places seen before; empty: none are looked for. Called on the backend thread.
+  slam::LoopSource loops;
   /// Where everyone posts events; never null.
   std::shared_ptr<EventLog> events = std::make_shared<EventLog>();
 };

@@ -11,6 +11,7 @@
 #include "daemon/protocol_status.hpp"
 #include "daemon/steady_clock.hpp"
 #include "daemon/systemd_notify.hpp"
+#include "slam/loops/loops_by_appearance.hpp"
 
 namespace glint::daemon {
 namespace {
@@ -26,8 +27,9 @@ std::chrono::nanoseconds supervision_period() {
                                                   : kSupervisionNs);
 }
 
-RuntimeOptions with_session(RuntimeOptions options, const Config& config) {
+RuntimeOptions with_session_and_loops(RuntimeOptions options, const Config& config) {
   options.session_file = new_session_file(config);
+  options.loops = slam::loops_by_appearance(config.slam);
   if (options.session_file.empty()) {
     spdlog::info("no session is kept: state.directory is not set");
   }
@@ -40,7 +42,8 @@ Service::Service(boost::asio::io_context& io, const Config& config, Input input,
     : config_(config),
       reload_(std::move(reload)),
       io_(io),
-      runtime_(input.info, config, std::move(input.source), with_session(input.options, config)),
+      runtime_(input.info, config, std::move(input.source),
+               with_session_and_loops(input.options, config)),
       api_(io_, runtime_, config),
       server_(io_, api_, config),
       signals_(io_, SIGINT, SIGTERM, SIGHUP),

@@ -12,8 +12,8 @@
 #include "driver/core/clock_model.hpp"
 #include "driver/core/clock_source.hpp"
 #include "driver/core/scan_assembler.hpp"
-#include "slam/backend.hpp"
 #include "slam/map.hpp"
+#include "slam/map_correction.hpp"
 #include "slam/odometry_estimate.hpp"
 
 namespace glint::daemon {
@@ -62,6 +62,9 @@ struct Snapshot {
 struct MapState {
   std::shared_ptr<const slam::MapSnapshot> map;  ///< Never null.
   DurationStats backend;
+  DurationStats pgo;
+  std::uint64_t loops_accepted = 0;
+  std::uint64_t loops_rejected = 0;
   std::uint64_t store_failures = 0;
   std::string store_error;
 };

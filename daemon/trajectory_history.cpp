@@ -94,6 +94,7 @@ std::optional<PoseRecord> pose_at(const TrajectoryHistory& history, SensorTime s
   PoseRecord out = b;
   out.stamp = stamp;
   out.T_odom_sensor = interpolate(a.T_odom_sensor, b.T_odom_sensor, fraction);
+  out.sequence = a.sequence + fraction * (b.sequence - a.sequence);
   out.velocity = a.velocity + fraction * (b.velocity - a.velocity);
   if (a.host_time.ns != 0 && b.host_time.ns != 0) {
     out.host_time =

@@ -19,7 +19,8 @@ struct PoseRecord {
   slam::TrackingState state = slam::TrackingState::kInit;
   std::uint32_t segment = 0;
   std::uint32_t frame_id = 0;
-  HostTime host_time;  ///< Of the stamp; 0 if unknown.
+  double sequence = 0.0;  ///< OdometryEstimate::sequence; a fraction: between two scans.
+  HostTime host_time;     ///< Of the stamp; 0 if unknown.
   std::int64_t clock_sigma_ns = 0;
 };
 

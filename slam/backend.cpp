@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
+#include <utility>
 
 namespace glint::slam {
 namespace {
@@ -21,11 +21,29 @@ double voxel_from_median_range_m(const Keyframe& keyframe) {
   return std::clamp(static_cast<double>(*middle) / 40.0, 0.05, 0.5);
 }
 
+// A loop that fits the poses as they are as well as right ones do on average moves nothing yet:
+// clients are spared a jump of the map that only noise would tell.
+constexpr double kFitting = 6.0;
+
+bool same_pair(const LoopEdge& a, const LoopEdge& b) { return a.from == b.from && a.to == b.to; }
+
+LargestCorrection largest_of(std::span<const Pose> before, std::span<const Pose> after) {
+  LargestCorrection largest;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const Pose motion = before[i].inverse() * after[i];
+    largest.distance_m = std::max(largest.distance_m, motion.translation_m.norm());
+    largest.angle_rad = std::max(largest.angle_rad, so3_log(motion.rotation).norm());
+  }
+  return largest;
+}
+
 }  // namespace
 
-Backend::Backend(const SlamConfig& config, const std::filesystem::path& session_file, Clock clock)
+Backend::Backend(const SlamConfig& config, const std::filesystem::path& session_file, Clock clock,
+                 LoopSource loops)
     : config_(config),
       clock_(clock),
+      loops_(config.loops ? std::move(loops) : LoopSource{}),
       store_(session_file.empty() ? nullptr : std::make_unique<SessionStore>(session_file, config)),
       snapshot_(std::make_shared<const MapSnapshot>()) {}
 
@@ -36,23 +54,147 @@ void Backend::use_sensor(const SensorInfo& info) {
 }
 
 void Backend::process(const Keyframe& keyframe) {
-  const std::int64_t wall_start_ns = clock_.monotonic_ns();
-  const std::int64_t cpu_start_ns = clock_.thread_cpu_ns();
-  const Pose T_map_sensor = correction_.T_map_odom * keyframe.estimate.T_odom_sensor;
+  times_ = {};
+  const StageTimer timer(clock_, times_, Stage::kBackend);
+  loop_reports_.clear();
+  stamp_ = keyframe.estimate.stamp;
+  Pose T_map_sensor;
+  {
+    const StageTimer pgo(clock_, times_, Stage::kPgo);
+    T_map_sensor = graph_.add(keyframe);
+  }
   if (!map_) {
     const double voxel_m =
         config_.map_voxel_m > 0 ? config_.map_voxel_m : voxel_from_median_range_m(keyframe);
     map_.emplace(voxel_m, static_cast<std::size_t>(config_.map_max_points));
   }
   map_->insert(T_map_sensor, keyframe.points);
-  if (store_ && !store_->add(keyframe, T_map_sensor)) ++store_failures_;
-  ++keyframe_count_;
+  if (store_ && !store_->add(keyframe, T_map_sensor)) {
+    ++store_failures_;
+    not_stored_.insert(keyframe.id);
+  }
+  if (loops_) look_for_loops(keyframe);
+  store_changes();
+  publish();
+}
 
+void Backend::finish() {
+  times_ = {};
+  const StageTimer timer(clock_, times_, Stage::kBackend);
+  loop_reports_.clear();
+  if (!loops_waiting_) return;
+  {
+    const StageTimer pgo(clock_, times_, Stage::kPgo);
+    for (const LoopEdge& edge : optimize()) report_refused(edge, "other loops contradict it");
+  }
+  loops_rejected_ += loop_reports_.size();
+  store_changes();
+  publish();
+}
+
+void Backend::look_for_loops(const Keyframe& keyframe) {
+  LoopSearch found = loops_(keyframe);
+  for (LoopCandidate& candidate : found.candidates) {
+    loop_reports_.push_back({stamp_, std::move(candidate), {}, {}, {}});
+  }
+  if (found.edge) {
+    const LoopEdge& edge = *found.edge;
+    const auto is_of_edge = [&](const LoopReport& r) { return r.candidate.from == edge.from; };
+    const auto known = std::ranges::find_if(loop_reports_, is_of_edge);
+    const auto slot = static_cast<std::size_t>(known - loop_reports_.begin());
+    if (known == loop_reports_.end()) loop_reports_.emplace_back().stamp = stamp_;
+    // Further reports may join it meanwhile.
+    LoopReport report = std::move(loop_reports_[slot]);
+    report.candidate.from = edge.from;
+    report.candidate.to = edge.to;
+    report.candidate.accepted = true;
+    take_loop(edge, report);
+    loop_reports_[slot] = std::move(report);
+  }
+  loops_rejected_ += static_cast<std::uint64_t>(std::ranges::count_if(
+      loop_reports_, [](const LoopReport& report) { return !report.candidate.accepted; }));
+}
+
+// The graph's word on an edge that appearance and geometry speak for.
+void Backend::take_loop(const LoopEdge& edge, LoopReport& report) {
+  const StageTimer timer(clock_, times_, Stage::kPgo);
+  report.before = graph_.misfit(edge);
+  report.after = report.before;
+  if (!report.before) {
+    report.candidate.accepted = false;
+    report.candidate.reason = "its keyframes or its covariance are none of the graph's";
+    return;
+  }
+  const bool fits = graph_.joined(edge) && report.before->chi_squared <= kFitting;
+  graph_.add_loop(edge);
+  changes_.added.push_back(edge);
+  loops_waiting_ = true;
+  if (fits) return;
+  for (const LoopEdge& refused : optimize()) {
+    if (same_pair(refused, edge)) {
+      report.candidate.accepted = false;
+      report.candidate.reason = "other loops contradict it";
+      changes_.added.pop_back();
+    } else {
+      report_refused(refused, "loops found later contradict it");
+    }
+  }
+  report.after = graph_.misfit(edge);
+  report.correction = last_correction_;
+}
+
+void Backend::report_refused(const LoopEdge& edge, const char* reason) {
+  LoopReport& report = loop_reports_.emplace_back();
+  report.stamp = stamp_;
+  report.candidate.from = edge.from;
+  report.candidate.to = edge.to;
+  report.candidate.reason = reason;
+  report.after = graph_.misfit(edge);
+  changes_.removed.push_back(edge);
+}
+
+// Returns the edges that did not fit and are gone.
+std::vector<LoopEdge> Backend::optimize() {
+  const std::vector<Pose> before(graph_.poses().begin(), graph_.poses().end());
+  std::vector<LoopEdge> refused = graph_.optimize();
+  loops_waiting_ = false;
+  last_correction_ = largest_of(before, graph_.poses());
+  if (last_correction_.distance_m > 0.0 || last_correction_.angle_rad > 0.0) correct(before);
+  return refused;
+}
+
+// Tells of the poses as the graph has them now: correction, map and session follow.
+void Backend::correct(const std::vector<Pose>& before) {
+  auto anchors = std::make_shared<std::vector<CorrectionAnchor>>();
+  std::vector<Pose> T_new_old;
+  changes_.poses.clear();
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const GraphNode& node = graph_.nodes()[i];
+    const Pose& T_map_sensor = graph_.poses()[i];
+    anchors->push_back({node.segment, node.sequence, T_map_sensor * node.T_odom_sensor.inverse()});
+    T_new_old.push_back(T_map_sensor * before[i].inverse());
+    if (!not_stored_.contains(node.id)) changes_.poses.emplace_back(node.id, T_map_sensor);
+  }
+  correction_ = {anchors->back().T_map_odom, correction_.epoch + 1, anchors};
+  map_->move(T_new_old);
+}
+
+void Backend::store_changes() {
+  LoopChanges changes = std::exchange(changes_, {});
+  if (!store_) return;
+  for (const LoopReport& report : loop_reports_) {
+    changes.events.push_back({report.stamp, "loop", to_json(report).dump()});
+  }
+  // A correction or an edge comes with its report, but for those of finish().
+  if (changes.events.empty() && changes.poses.empty()) return;
+  if (!store_->apply(changes)) ++store_failures_;
+}
+
+void Backend::publish() {
   auto snapshot = map_->snapshot();
-  snapshot->keyframe_count = keyframe_count_;
+  snapshot->keyframe_count = graph_.nodes().size();
+  snapshot->epoch = correction_.epoch;
   snapshot_ = std::move(snapshot);
-  last_wall_ns_ = clock_.monotonic_ns() - wall_start_ns;
-  last_cpu_ns_ = clock_.thread_cpu_ns() - cpu_start_ns;
 }
 
 std::string_view Backend::store_error() const { return store_ ? store_->error() : ""; }

@@ -6,30 +6,31 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string_view>
+#include <vector>
 
 #include "driver/core/clock.hpp"
 #include "slam/config.hpp"
 #include "slam/keyframe.hpp"
+#include "slam/loop_report.hpp"
+#include "slam/loop_source.hpp"
 #include "slam/map.hpp"
+#include "slam/map_correction.hpp"
+#include "slam/pose_graph.hpp"
 #include "slam/session_store.hpp"
+#include "slam/stage_times.hpp"
 
 namespace glint::slam {
 
-/// What the back end tells odometry and clients: where the odometry frame lies in the map frame.
-/// `epoch` steps each time T_map_odom jumps.
-struct MapCorrection {
-  Pose T_map_odom;
-  std::uint32_t epoch = 0;
-};
-
-/// Keyframes in, map and session out. Thread-compatible; owned by the backend thread.
+/// Keyframes in; pose graph, map and session out. Thread-compatible; owned by the backend thread.
 class Backend {
  public:
   /// `session_file`: where the session is kept; empty for none. @throws InputError if it cannot be
   /// created.
+  /// `loops`: finds places seen before; empty for none.
   explicit Backend(const SlamConfig& config, const std::filesystem::path& session_file = {},
-                   Clock clock = {});
+                   Clock clock = {}, LoopSource loops = {});
   ~Backend();
   Backend(const Backend&) = delete;
   Backend& operator=(const Backend&) = delete;
@@ -37,26 +38,47 @@ class Backend {
   /// Whose scans the keyframes that follow are of.
   void use_sensor(const SensorInfo& info);
   void process(const Keyframe& keyframe);
+  /// Nothing follows for now: loops that were not worth a correction each get one together.
+  void finish();
   [[nodiscard]] const MapCorrection& correction() const { return correction_; }
   /// The map now; immutable, to be handed to clients.
   [[nodiscard]] std::shared_ptr<const MapSnapshot> snapshot() const { return snapshot_; }
-  /// Wall and CPU time of the last process() call, ns.
-  [[nodiscard]] std::int64_t last_wall_ns() const { return last_wall_ns_; }
-  [[nodiscard]] std::int64_t last_cpu_ns() const { return last_cpu_ns_; }
+  /// What the last call found out about loops.
+  [[nodiscard]] const std::vector<LoopReport>& loop_reports() const { return loop_reports_; }
+  /// Edges in the graph, and candidates that are none, or no more.
+  [[nodiscard]] std::uint64_t loops_accepted() const { return graph_.loop_count(); }
+  [[nodiscard]] std::uint64_t loops_rejected() const { return loops_rejected_; }
+  /// What the last call took (kPgo; kBackend is all of it).
+  [[nodiscard]] const StageTimes& stage_times() const { return times_; }
   /// Keyframes and sensors the session file could not take, and why the last one could not.
   [[nodiscard]] std::uint64_t store_failures() const { return store_failures_; }
   [[nodiscard]] std::string_view store_error() const;
 
  private:
+  void look_for_loops(const Keyframe& keyframe);
+  void take_loop(const LoopEdge& edge, LoopReport& report);
+  std::vector<LoopEdge> optimize();
+  void report_refused(const LoopEdge& edge, const char* reason);
+  void correct(const std::vector<Pose>& before);
+  void store_changes();
+  void publish();
+
   const SlamConfig config_;
   const Clock clock_;
+  const LoopSource loops_;
+  PoseGraph graph_;
   std::optional<VoxelMap> map_;  ///< Made with the first keyframe, whose ranges set the voxels.
   std::unique_ptr<SessionStore> store_;
   MapCorrection correction_;
   std::shared_ptr<const MapSnapshot> snapshot_;
-  std::size_t keyframe_count_ = 0;
-  std::int64_t last_wall_ns_ = 0;
-  std::int64_t last_cpu_ns_ = 0;
+  std::vector<LoopReport> loop_reports_;
+  LargestCorrection last_correction_;
+  LoopChanges changes_;                 ///< For the session file, of this call.
+  bool loops_waiting_ = false;          ///< There are edges that poses were not optimised with.
+  std::set<std::uint64_t> not_stored_;  ///< Keyframes that the session file lacks.
+  SensorTime stamp_;                    ///< Of the last keyframe.
+  std::uint64_t loops_rejected_ = 0;
+  StageTimes times_;
   std::uint64_t store_failures_ = 0;
 };
 

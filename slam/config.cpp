@@ -15,6 +15,7 @@ SlamConfig preset_config(const std::string& name) {
     config.preset = "paper";
     config.deskew = false;
     config.orb_upright = false;
+    config.plane_neighbours = 3;
     return config;
   }
   throw InputError(fmt::format("unknown preset '{}': choose 'paper' or 'full'", name));

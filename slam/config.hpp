@@ -50,10 +50,41 @@ struct SlamConfig {
   /// Scans bridged by constant velocity (state DEGRADED) before the state is LOST.
   int max_coasted_scans = 3;
 
+  /// Keypoints of the intensity image are matched from scan to scan. Off: surfaces alone, the
+  /// baseline that intensity is measured against.
+  bool intensity = true;
+  /// Elements of the map optimisation, each of which may be switched off: surfaces against the
+  /// local map, the ground apart from other surfaces, keypoints against the last scans.
+  bool planes = true;
+  bool ground = true;
+  bool ba = true;
+  /// Places seen again are recognised and correct the map.
+  bool loops = true;
+  /// Height of the sensor above the ground, m; 0 (auto): that of the dominant low plane.
+  double sensor_height_m = 0.0;
+  /// Weight of the ground's residuals to those of other surfaces.
+  double ground_weight = 2.0;
+  /// About so many points on surfaces are taken from a scan.
+  int plane_points = 1200;
+  /// Nearest map points that give a plane: 3 span it, more are fitted.
+  int plane_neighbours = 5;
+  /// The local map keeps a point in cubes of this edge (m), within this distance (m) of the sensor.
+  double local_map_voxel_m = 0.4;
+  double local_map_radius_m = 100.0;
+  /// Last scans whose keypoints are compared, and the weight of these residuals.
+  int ba_frames = 10;
+  double ba_weight = 1.0;
+  /// Most times that associations are made anew for a scan.
+  int map_rounds = 4;
+
   /// A keyframe is made after this distance (m), angle (rad), or when fewer matches remain.
   double keyframe_distance_m = 0.5;
   double keyframe_angle_rad = 0.26;
   int keyframe_min_matches = 60;
+
+  /// File of the vocabulary that recognises places seen again, see `glint train-vocabulary`; empty:
+  /// the built-in one.
+  std::string vocabulary;
 
   /// Edge of the map's voxels, m: one point is kept in each. 0: a fortieth of the first keyframe's
   /// median range, between 0.05 and 0.5 m, so that rooms and streets need no setting.

@@ -84,7 +84,7 @@ void FeatureExtractor::extract(const LidarScan& scan, const ScanImages& images,
     const int m = staggered_column(col, my.shift[static_cast<std::size_t>(row)], cols);
     const auto degrees_to_rad = static_cast<float>(M_PI / 180.0);
     features.keypoints.push_back(
-        {keypoint.pt.x, v_px, keypoint.angle * degrees_to_rad, keypoint.octave});
+        {keypoint.pt.x, v_px, keypoint.angle * degrees_to_rad, keypoint.octave, keypoint.response});
     Descriptor descriptor;
     std::memcpy(descriptor.data(), my.descriptors.ptr(static_cast<int>(i)), sizeof descriptor);
     features.descriptors.push_back(descriptor);

@@ -27,6 +27,7 @@ struct Features {
     float v_px = 0.0F;  ///< Row.
     float angle_rad = 0.0F;
     int octave = 0;
+    float response = 0.0F;  ///< Strength of the corner, comparable within one scan.
   };
   std::vector<Keypoint> keypoints;
   std::vector<Descriptor> descriptors;

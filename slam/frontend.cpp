@@ -12,6 +12,7 @@
 #include "slam/deskew.hpp"
 #include "slam/features.hpp"
 #include "slam/keyframe_selector.hpp"
+#include "slam/map_optimizer.hpp"
 #include "slam/matching.hpp"
 #include "slam/motion_estimation.hpp"
 
@@ -22,26 +23,36 @@ namespace {
 constexpr int kRestartScans = 3;
 // A scan with fewer keypoints cannot serve as a reference.
 constexpr std::size_t kFewestKeypoints = 20;
+// The surfaces alone give a pose when so many of them, and this share of them, lie where the map
+// has them, this close. Held against another room, some two thirds do, 0.09 m off.
+constexpr int kFewestPlanes = 100;
+constexpr double kLeastOverlap = 0.5;
+constexpr double kLargestRms_m = 0.06;
 // Longest step over which the motion of the last scan still predicts the next one, s.
 constexpr double kLongestPrediction_s = 0.5;
 // What a coasted scan adds to the covariance: metres and radians of unknown acceleration.
 constexpr double kCoastedSigma_m = 0.1;
 constexpr double kCoastedSigma_rad = 0.05;
 
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
 // Covariance of a * b, where b's is `increment` and a's is `base`, both right perturbations.
-Eigen::Matrix<double, 6, 6> compose_covariance(const Eigen::Matrix<double, 6, 6>& base,
-                                               const Pose& b,
-                                               const Eigen::Matrix<double, 6, 6>& increment) {
+Matrix6 compose_covariance(const Matrix6& base, const Pose& b, const Matrix6& increment) {
   const Pose inverse = b.inverse();
   const Eigen::Matrix3d r = inverse.rotation.toRotationMatrix();
   const Eigen::Vector3d& t = inverse.translation_m;
   Eigen::Matrix3d skew;
   skew << 0, -t.z(), t.y(), t.z(), 0, -t.x(), -t.y(), t.x(), 0;
-  Eigen::Matrix<double, 6, 6> adjoint = Eigen::Matrix<double, 6, 6>::Zero();
+  Matrix6 adjoint = Matrix6::Zero();
   adjoint.topLeftCorner<3, 3>() = r;
   adjoint.topRightCorner<3, 3>() = skew * r;
   adjoint.bottomRightCorner<3, 3>() = r;
   return adjoint * base * adjoint.transpose() + increment;
+}
+
+bool convincing(const MapOptimization& result) {
+  return result.plane_terms >= kFewestPlanes && result.overlap > kLeastOverlap &&
+         result.plane_rms_m < kLargestRms_m;
 }
 
 // A scan that later ones are registered with.
@@ -69,13 +80,19 @@ struct Frontend::Impl {
         matcher({config.match_max_distance, config.match_keep_share, config.match_max}),
         registrar({config.registration_inlier_m, config.registration_huber_m,
                    config.registration_min_inliers}),
-        selector(config) {}
+        selector(config) {
+    if (config.planes || config.ba) optimizer.emplace(info, config, lut);
+  }
 
   void run(const LidarScan& scan);
   bool observe(const LidarScan& scan);
-  void initialize();
+  void initialize(const LidarScan& scan);
+  void begin_map(const LidarScan& scan, const Pose& T_odom_scan);
   Registration track(const ReferenceScan& from, const Twist& predicted_velocity);
+  Registration predicted() const;
   bool plausible(const Registration& motion, double dt_s) const;
+  void observe_surfaces(const LidarScan& scan, const Twist& velocity, const Pose& T_odom_scan);
+  bool correct_by_map(const LidarScan& scan, bool registered, Registration& motion);
   void accept(const Registration& motion, const LidarScan& scan);
   void coast(const LidarScan& scan);
   void search_restart(const LidarScan& scan);
@@ -95,6 +112,7 @@ struct Frontend::Impl {
   Matcher matcher;
   Registrar registrar;
   KeyframeSelector selector;
+  std::optional<MapOptimizer> optimizer;  // None where all its elements are switched off.
 
   ScanImages images;
   Features current;
@@ -105,7 +123,9 @@ struct Frontend::Impl {
   int candidate_successes = 0;
   int failures = 0;            // Scans since the last good one.
   Pose T_odom_origin = mount;  // Of the first scan of a trajectory.
+  std::vector<Match> matches;
   std::vector<PointPair> pairs;
+  Matrix6 edge_covariance = Matrix6::Zero();  // Of the motion since the last keyframe.
 
   OdometryEstimate estimate;
   std::uint64_t next_keyframe_id = 0;
@@ -136,6 +156,7 @@ void Frontend::reset() {
   my.failures = 0;
   my.T_odom_origin = my.mount;
   my.selector.reset();
+  if (my.optimizer) my.optimizer->reset();
   const std::uint32_t segment = my.estimate.segment + 1;
   my.estimate = {};
   my.estimate.segment = segment;
@@ -163,14 +184,17 @@ void Frontend::Impl::run(const LidarScan& scan) {
   estimate.inliers = 0;
   const bool usable = observe(scan);
   if (!reference.valid) {
-    if (usable) initialize();
+    if (usable) initialize(scan);
     publish(scan, T_odom_origin);
     if (usable) make_keyframe(scan);
     return;
   }
   if (usable) {
-    const Registration motion = track(reference, estimate.velocity);
-    if (plausible(motion, seconds_since(reference))) {
+    Registration motion;
+    if (config.intensity) motion = track(reference, estimate.velocity);
+    const bool registered = plausible(motion, seconds_since(reference));
+    if (!registered) motion = predicted();
+    if (correct_by_map(scan, registered, motion)) {
       accept(motion, scan);
       return;
     }
@@ -187,15 +211,28 @@ bool Frontend::Impl::observe(const LidarScan& scan) {
     const StageTimer timer(clock, times, Stage::kImage);
     former.form(scan, images);
   }
-  const StageTimer timer(clock, times, Stage::kFeatures);
-  extractor.extract(scan, images, current);
+  if (config.intensity) {
+    const StageTimer timer(clock, times, Stage::kFeatures);
+    extractor.extract(scan, images, current);
+  }
   estimate.keypoints = static_cast<int>(current.size());
-  return scan.completeness() >= config.min_completeness && current.size() >= kFewestKeypoints;
+  return scan.completeness() >= config.min_completeness &&
+         (current.size() >= kFewestKeypoints || config.planes);
 }
 
-void Frontend::Impl::initialize() {
+void Frontend::Impl::initialize(const LidarScan& scan) {
   estimate.state = TrackingState::kInit;
+  begin_map(scan, T_odom_origin);
   become_reference(reference, T_odom_origin);
+}
+
+// The map of a trajectory or segment begins with this scan.
+void Frontend::Impl::begin_map(const LidarScan& scan, const Pose& T_odom_scan) {
+  if (!optimizer) return;
+  optimizer->reset();
+  matches.clear();
+  observe_surfaces(scan, Twist::Zero(), T_odom_scan);
+  optimizer->remember(current, matches, T_odom_scan, Twist::Zero());
 }
 
 // Registers the current scan with an older one; [Du & Beltrame 2023, eqs. 2-3].
@@ -203,12 +240,11 @@ Registration Frontend::Impl::track(const ReferenceScan& from, const Twist& predi
   const double dt_s = seconds_since(from);
   const bool predictable = dt_s > 0 && dt_s < kLongestPrediction_s;
   Twist velocity = predictable ? predicted_velocity : Twist::Zero();
-  const std::vector<Match>* matches = nullptr;
   {
     const StageTimer timer(clock, times, Stage::kMatching);
-    matches = &matcher.match(from.features.descriptors, current.descriptors);
+    matches = matcher.match(from.features.descriptors, current.descriptors);
   }
-  estimate.matches = static_cast<int>(matches->size());
+  estimate.matches = static_cast<int>(matches.size());
 
   const StageTimer timer(clock, times, Stage::kRegistration);
   Registration motion;
@@ -220,7 +256,7 @@ Registration Frontend::Impl::track(const ReferenceScan& from, const Twist& predi
              current.points_m);
     }
     pairs.clear();
-    for (const Match& match : *matches) {
+    for (const Match& match : matches) {
       pairs.push_back({from.features.points_m[static_cast<std::size_t>(match.reference)],
                        current.points_m[static_cast<std::size_t>(match.current)],
                        match_score(match.distance)});
@@ -231,6 +267,44 @@ Registration Frontend::Impl::track(const ReferenceScan& from, const Twist& predi
     if (predictable) velocity = se3_log(motion.T_reference_current) / dt_s;
   }
   return motion;
+}
+
+// Where no keypoints tell it: the motion goes on.
+Registration Frontend::Impl::predicted() const {
+  const double dt_s = seconds_since(reference);
+  const bool predictable = dt_s > 0 && dt_s < kLongestPrediction_s;
+  Registration motion;
+  if (predictable) motion.T_reference_current = se3_exp(estimate.velocity * dt_s);
+  return motion;
+}
+
+void Frontend::Impl::observe_surfaces(const LidarScan& scan, const Twist& velocity,
+                                      const Pose& T_odom_scan) {
+  const ConstantVelocity motion = motion_about(current_time, velocity);
+  optimizer->observe(scan, images, config.deskew ? &motion : nullptr,
+                     T_odom_scan.rotation.conjugate() * Eigen::Vector3d::UnitZ());
+}
+
+// Map optimisation: corrects the motion that odometry found. Where it found none, the surfaces may
+// tell it by themselves. False if neither does.
+bool Frontend::Impl::correct_by_map(const LidarScan& scan, bool registered, Registration& motion) {
+  if (!optimizer) return registered;
+  const StageTimer timer(clock, times, Stage::kMapOptimization);
+  const double dt_s = seconds_since(reference);
+  const bool predictable = dt_s > 0 && dt_s < kLongestPrediction_s;
+  const Pose start = reference.T_odom_scan * motion.T_reference_current;
+  observe_surfaces(
+      scan, predictable ? Twist(se3_log(motion.T_reference_current) / dt_s) : Twist::Zero(), start);
+  if (!registered) matches.clear();
+  const MapOptimization result = optimizer->optimize(current, matches, start);
+  if (!result.ok || !(registered || convincing(result))) return registered;
+  Registration corrected = motion;
+  corrected.ok = true;
+  corrected.T_reference_current = reference.T_odom_scan.inverse() * result.T_odom_scan;
+  corrected.covariance = result.covariance;
+  if (!plausible(corrected, dt_s)) return registered;
+  motion = corrected;
+  return true;
 }
 
 bool Frontend::Impl::plausible(const Registration& motion, double dt_s) const {
@@ -250,6 +324,8 @@ void Frontend::Impl::accept(const Registration& motion, const LidarScan& scan) {
       predictable ? Twist(se3_log(motion.T_reference_current) / dt_s) : Twist::Zero();
   estimate.covariance =
       compose_covariance(estimate.covariance, motion.T_reference_current, motion.covariance);
+  edge_covariance =
+      compose_covariance(edge_covariance, motion.T_reference_current, motion.covariance);
   estimate.inliers = motion.inliers;
   estimate.state = scan.completeness() < config.degraded_completeness ? TrackingState::kDegraded
                                                                       : TrackingState::kTracking;
@@ -257,6 +333,10 @@ void Frontend::Impl::accept(const Registration& motion, const LidarScan& scan) {
   candidate.valid = false;
   const Pose T_odom_scan = reference.T_odom_scan * motion.T_reference_current;
   publish(scan, T_odom_scan);
+  if (optimizer) {
+    const StageTimer timer(clock, times, Stage::kMapOptimization);
+    optimizer->remember(current, matches, T_odom_scan, estimate.velocity);
+  }
   become_reference(reference, T_odom_scan);
   make_keyframe(scan);
 }
@@ -267,7 +347,7 @@ void Frontend::Impl::coast(const LidarScan& scan) {
   ++failures;
   if (estimate.state == TrackingState::kInit) {
     // Nothing has been tracked yet: begin anew with this scan if it is of use.
-    if (current.size() >= kFewestKeypoints) initialize();
+    if (current.size() >= kFewestKeypoints || config.planes) initialize(scan);
     publish(scan, T_odom_origin);
     return;
   }
@@ -283,7 +363,8 @@ void Frontend::Impl::coast(const LidarScan& scan) {
   const double dt_s = seconds_since(reference);
   const bool predictable = dt_s > 0 && dt_s < kLongestPrediction_s;
   const Pose motion = predictable ? se3_exp(estimate.velocity * dt_s) : Pose{};
-  estimate.covariance += Eigen::Matrix<double, 6, 6>(sigma.cwiseAbs2().asDiagonal());
+  estimate.covariance += Matrix6(sigma.cwiseAbs2().asDiagonal());
+  edge_covariance += Matrix6(sigma.cwiseAbs2().asDiagonal());
   publish(scan, reference.T_odom_scan * motion);
 }
 
@@ -299,6 +380,7 @@ void Frontend::Impl::search_restart(const LidarScan& scan) {
     estimate.state = TrackingState::kTracking;
     failures = 0;
     candidate.valid = false;
+    begin_map(scan, estimate.T_odom_sensor);
     become_reference(reference, estimate.T_odom_sensor);
     make_keyframe(scan);
     return;
@@ -320,6 +402,10 @@ void Frontend::Impl::make_keyframe(const LidarScan& scan) {
   keyframe.emplace();
   keyframe->id = next_keyframe_id++;
   keyframe->estimate = estimate;
+  keyframe->edge_covariance = edge_covariance;
+  edge_covariance.setZero();
+  keyframe->features = reference.features;
+  for (Eigen::Vector3d& point_m : keyframe->features.points_m) point_m = T_end_middle * point_m;
   for (int m = 0; m < columns; m += std::max(1, config.map_column_step)) {
     const auto column = static_cast<std::size_t>(m);
     const Pose T_end_column = config.deskew ? motion.at(scan.column_time[column]) : T_end_middle;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "slam/features.hpp"
 #include "slam/odometry_estimate.hpp"
 
 namespace glint::slam {
@@ -23,6 +24,11 @@ struct Keyframe {
   OdometryEstimate estimate;
   /// Points in the sensor frame at estimate.stamp (motion compensated), m.
   std::vector<MapPoint> points;
+  /// The keypoints of its intensity image; `points_m` as `points` above.
+  Features features;
+  /// Covariance of the motion since the keyframe before it, as that of an OdometryEstimate: the
+  /// odometry edge of the pose graph. Meaningless for the first one of a segment.
+  Eigen::Matrix<double, 6, 6> edge_covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
 
 }  // namespace glint::slam

@@ -28,6 +28,12 @@ struct MapTile {
   std::vector<MapPoint> points;  ///< Map frame, m; in order of arrival, one per voxel.
 };
 
+/// A tile that is no more, since this revision.
+struct RemovedTile {
+  TileIndex index{};
+  std::uint64_t revision = 0;
+};
+
 /// The whole map at one revision; tiles are shared with later snapshots while they do not change.
 struct MapSnapshot {
   std::uint64_t revision = 0;
@@ -35,18 +41,24 @@ struct MapSnapshot {
   std::size_t keyframe_count = 0;
   std::uint64_t points_refused = 0;  ///< New voxels not stored because the map is full.
   std::vector<std::shared_ptr<const MapTile>> tiles;  ///< Ordered by index.
+  std::uint64_t moved_revision = 0;                   ///< At which all points moved last.
+  std::vector<RemovedTile> removed;                   ///< Ordered by index.
+  std::uint32_t epoch = 0;                            ///< Of the correction it is made with.
 };
 
-/// Voxel-downsampled points in the map frame: the first point to fall into a voxel stays.
-/// Bounded by `max_points`. Deterministic. Thread-compatible; snapshots may be read anywhere.
+/// Voxel-downsampled points in the map frame: the first point to fall into a voxel stays. When the
+/// views that brought them are moved, points move with them and all stay, so that no correction
+/// wears holes. Bounded by `max_points`. Deterministic. Thread-compatible; snapshots may be read
+/// anywhere.
 class VoxelMap {
  public:
   /// `voxel_m`: edge of a voxel, at least 0.01 m.
   VoxelMap(double voxel_m, std::size_t max_points);
 
-  /// Adds points given in the sensor frame, seen from T_map_sensor.
+  /// Adds points given in the sensor frame, seen from T_map_sensor: the next view, from 0 on.
   void insert(const Pose& T_map_sensor, std::span<const MapPoint> points);
-  void clear();
+  /// Moves the points that each view brought: T_new_old of view 0, 1, ... in the map frame.
+  void move(std::span<const Pose> T_new_old);
   [[nodiscard]] std::size_t point_count() const { return point_count_; }
   /// The present state; copies only tiles that changed since the last call.
   [[nodiscard]] std::shared_ptr<MapSnapshot> snapshot();
@@ -54,14 +66,25 @@ class VoxelMap {
  private:
   struct WorkingTile {
     MapTile tile;
+    std::vector<std::uint32_t> views;          ///< That brought each of its points.
     std::shared_ptr<const MapTile> published;  ///< Null while there are changes to publish.
     std::unordered_set<std::uint64_t> occupied_voxels;  ///< Voxels that hold a point.
   };
 
+  struct Cell {
+    TileIndex tile;
+    std::uint64_t voxel;
+  };
+  [[nodiscard]] Cell cell_of(const Eigen::Vector3d& p) const;
+  void put(const Cell& cell, const MapPoint& point, std::uint32_t view);
+
   const double voxel_m_;
   const std::size_t max_points_;
+  std::uint32_t view_count_ = 0;
   std::map<TileIndex, WorkingTile> tiles_;
+  std::map<TileIndex, std::uint64_t> removed_;  ///< Tiles that are no more, and since when.
   std::uint64_t revision_ = 0;
+  std::uint64_t moved_revision_ = 0;
   std::size_t point_count_ = 0;
   std::uint64_t points_refused_ = 0;
 };

@@ -42,6 +42,47 @@ TEST(VoxelMap, OnlyChangedTilesAreCopied) {
   EXPECT_GT(after->tiles[1]->revision, before->tiles[1]->revision);
 }
 
+TEST(VoxelMap, PointsMoveWithTheViewThatBroughtThem) {
+  VoxelMap map(0.1, 1000);
+  map.insert({}, std::vector<MapPoint>{{1, 1, 1, 5}, {100, 1, 1, 6}});
+  map.insert({}, std::vector<MapPoint>{{1, 2, 1, 7}});
+  const auto before = map.snapshot();
+  const Pose ahead{Eigen::Quaterniond::Identity(), {20.0, 0.0, 0.0}};
+  map.move(std::vector<Pose>{{}, ahead});
+  const auto after = map.snapshot();
+  EXPECT_EQ(after->point_count, 3U);
+  ASSERT_EQ(after->tiles.size(), 3U);
+  EXPECT_FLOAT_EQ(after->tiles[0]->points.at(0).x_m, 1.0F);
+  EXPECT_FLOAT_EQ(after->tiles[1]->points.at(0).x_m, 21.0F);
+  EXPECT_FLOAT_EQ(after->tiles[1]->points.at(0).intensity, 7.0F);
+  EXPECT_EQ(before->tiles[0]->points.size(), 2U);  // what was published stays as it was
+  EXPECT_EQ(after->moved_revision, after->revision);
+  // Where a point went, there is no room for another one.
+  map.insert({}, std::vector<MapPoint>{{21.0F, 2, 1, 8}, {1, 2, 1, 9}});
+  EXPECT_EQ(map.point_count(), 4U);
+}
+
+TEST(VoxelMap, PointsThatMeetInAVoxelBothStay) {
+  VoxelMap map(0.1, 2);
+  map.insert({}, std::vector<MapPoint>{{1.0F, 1, 1, 5}});
+  map.insert({}, std::vector<MapPoint>{{1.3F, 1, 1, 6}});
+  map.move(std::vector<Pose>{{}, {Eigen::Quaterniond::Identity(), {-0.3, 0.0, 0.0}}});
+  EXPECT_EQ(map.point_count(), 2U);
+  EXPECT_EQ(map.snapshot()->points_refused, 0U);
+}
+
+TEST(VoxelMap, TilesThatAreLeftEmptyAreToldUntilTheyFillAgain) {
+  VoxelMap map(0.1, 1000);
+  map.insert({}, std::vector<MapPoint>{{100, 1, 1, 0}});
+  map.move(std::vector<Pose>{{Eigen::Quaterniond::Identity(), {-50.0, 0.0, 0.0}}});
+  const auto moved = map.snapshot();
+  ASSERT_EQ(moved->removed.size(), 1U);
+  EXPECT_EQ(moved->removed[0].index, (TileIndex{6, 0, 0}));
+  EXPECT_EQ(moved->removed[0].revision, moved->revision);
+  map.insert({}, std::vector<MapPoint>{{100, 1, 1, 0}});
+  EXPECT_TRUE(map.snapshot()->removed.empty());
+}
+
 TEST(VoxelMap, IsBoundedAndCountsWhatItRefuses) {
   VoxelMap map(0.1, 3);
   std::vector<MapPoint> points;

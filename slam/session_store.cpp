@@ -79,6 +79,7 @@ struct SessionStore::Impl {
   ~Impl() {
     add_keyframe.reset();
     add_edge.reset();
+    remove_loop.reset();
     insert_event.reset();
     sqlite3_close(db);
   }
@@ -105,13 +106,26 @@ struct SessionStore::Impl {
     return done;
   }
 
+  /// Ends a transaction that `done` says went well so far.
+  bool end(bool done) {
+    if (done && run("COMMIT")) return true;
+    // The reason why is kept.
+    if (sqlite3_get_autocommit(db) == 0) sqlite3_exec(db, "ROLLBACK", nullptr, nullptr, nullptr);
+    return false;
+  }
+
   bool insert(const Keyframe& keyframe, const Pose& T_map_sensor);
   bool insert_odometry_edge(const Keyframe& keyframe);
+  bool insert_edge(const LoopEdge& edge, const char* kind);
+  bool remove(const LoopEdge& loop);
+  bool insert(const SessionEvent& event);
+  bool move_keyframes(const std::vector<std::pair<std::uint64_t, Pose>>& poses);
   bool put_meta(const char* key, std::string_view value);
 
   sqlite3* db = nullptr;
   Statement add_keyframe;
   Statement add_edge;
+  Statement remove_loop;
   Statement insert_event;
   std::optional<std::pair<std::uint64_t, OdometryEstimate>> last;
   std::string error;
@@ -134,18 +148,56 @@ bool SessionStore::Impl::insert(const Keyframe& keyframe, const Pose& T_map_sens
 
 bool SessionStore::Impl::insert_odometry_edge(const Keyframe& keyframe) {
   if (!last || last->second.segment != keyframe.estimate.segment) return true;
-  const OdometryEstimate& from = last->second;
-  const OdometryEstimate& to = keyframe.estimate;
-  const auto motion = pose_values(from.T_odom_sensor.inverse() * to.T_odom_sensor);
-  // What odometry's covariance grew by between the two.
-  const Eigen::Matrix<double, 6, 6> covariance = to.covariance - from.covariance;
+  const Pose& T_odom_from = last->second.T_odom_sensor;
+  return insert_edge(
+      {last->first, keyframe.id, T_odom_from.inverse() * keyframe.estimate.T_odom_sensor,
+       keyframe.edge_covariance},
+      "odometry");
+}
+
+bool SessionStore::Impl::insert_edge(const LoopEdge& edge, const char* kind) {
+  const auto motion = pose_values(edge.T_from_to);
   sqlite3_stmt* s = add_edge.get();
-  sqlite3_bind_int64(s, 1, static_cast<sqlite3_int64>(last->first));
-  sqlite3_bind_int64(s, 2, static_cast<sqlite3_int64>(keyframe.id));
-  sqlite3_bind_text(s, 3, "odometry", -1, SQLITE_STATIC);
+  sqlite3_bind_int64(s, 1, static_cast<sqlite3_int64>(edge.from));
+  sqlite3_bind_int64(s, 2, static_cast<sqlite3_int64>(edge.to));
+  sqlite3_bind_text(s, 3, kind, -1, SQLITE_STATIC);
   sqlite3_bind_blob(s, 4, motion.data(), sizeof motion, SQLITE_TRANSIENT);
-  sqlite3_bind_blob(s, 5, covariance.data(), 36 * sizeof(double), SQLITE_TRANSIENT);
+  sqlite3_bind_blob(s, 5, edge.covariance.data(), 36 * sizeof(double), SQLITE_TRANSIENT);
   return step(add_edge);
+}
+
+bool SessionStore::Impl::remove(const LoopEdge& loop) {
+  sqlite3_stmt* s = remove_loop.get();
+  sqlite3_bind_int64(s, 1, static_cast<sqlite3_int64>(loop.from));
+  sqlite3_bind_int64(s, 2, static_cast<sqlite3_int64>(loop.to));
+  return step(remove_loop);
+}
+
+bool SessionStore::Impl::insert(const SessionEvent& event) {
+  sqlite3_stmt* s = insert_event.get();
+  sqlite3_bind_int64(s, 1, event.stamp.ns);
+  sqlite3_bind_text(s, 2, event.kind.data(), static_cast<int>(event.kind.size()), SQLITE_TRANSIENT);
+  sqlite3_bind_text(s, 3, event.data.data(), static_cast<int>(event.data.size()), SQLITE_TRANSIENT);
+  return step(insert_event);
+}
+
+// Written over in place: an UPDATE would read and write each keyframe's points again.
+bool SessionStore::Impl::move_keyframes(const std::vector<std::pair<std::uint64_t, Pose>>& poses) {
+  sqlite3_blob* blob = nullptr;
+  bool done = true;
+  for (const auto& [id, T_map_sensor] : poses) {
+    const auto row = static_cast<sqlite3_int64>(id);
+    const auto values = pose_values(T_map_sensor);
+    const int opened =
+        blob == nullptr ? sqlite3_blob_open(db, "main", "keyframes", "T_map_sensor", row, 1, &blob)
+                        : sqlite3_blob_reopen(blob, row);
+    done = opened == SQLITE_OK &&
+           sqlite3_blob_write(blob, values.data(), sizeof values, 0) == SQLITE_OK;
+    if (!done) break;
+  }
+  if (!done) error = sqlite3_errmsg(db);
+  sqlite3_blob_close(blob);
+  return done;
 }
 
 bool SessionStore::Impl::put_meta(const char* key, std::string_view value) {
@@ -177,9 +229,11 @@ SessionStore::SessionStore(const std::filesystem::path& file, const SlamConfig& 
     my.add_edge = my.prepare(
         "INSERT INTO edges (from_keyframe, to_keyframe, kind, T_from_to, covariance) "
         "VALUES (?, ?, ?, ?, ?)");
+    my.remove_loop = my.prepare(
+        "DELETE FROM edges WHERE kind = 'loop' AND from_keyframe = ? AND to_keyframe = ?");
     my.insert_event = my.prepare("INSERT INTO events (t_ns, kind, data) VALUES (?, ?, ?)");
   }
-  if (!my.add_keyframe || !my.add_edge || !my.insert_event) {
+  if (!my.add_keyframe || !my.add_edge || !my.remove_loop || !my.insert_event) {
     throw InputError(fmt::format(
         "cannot create the session file {}: {}; choose a directory that exists and is writable",
         file.string(), my.error));
@@ -194,22 +248,19 @@ bool SessionStore::set_sensor(const SensorInfo& info) {
 
 bool SessionStore::add(const Keyframe& keyframe, const Pose& T_map_sensor) {
   Impl& my = *impl_;
-  const bool done = my.run("BEGIN") && my.insert(keyframe, T_map_sensor) &&
-                    my.insert_odometry_edge(keyframe) && my.run("COMMIT");
-  if (done) {
-    my.last = {keyframe.id, keyframe.estimate};
-  } else if (sqlite3_get_autocommit(my.db) == 0) {
-    sqlite3_exec(my.db, "ROLLBACK", nullptr, nullptr, nullptr);
-  }
+  const bool done = my.end(my.run("BEGIN") && my.insert(keyframe, T_map_sensor) &&
+                           my.insert_odometry_edge(keyframe));
+  if (done) my.last = {keyframe.id, keyframe.estimate};
   return done;
 }
 
-bool SessionStore::add_event(SensorTime stamp, std::string_view kind, std::string_view data) {
-  sqlite3_stmt* s = impl_->insert_event.get();
-  sqlite3_bind_int64(s, 1, stamp.ns);
-  sqlite3_bind_text(s, 2, kind.data(), static_cast<int>(kind.size()), SQLITE_TRANSIENT);
-  sqlite3_bind_text(s, 3, data.data(), static_cast<int>(data.size()), SQLITE_TRANSIENT);
-  return impl_->step(impl_->insert_event);
+bool SessionStore::apply(const LoopChanges& changes) {
+  Impl& my = *impl_;
+  bool done = my.run("BEGIN");
+  for (const LoopEdge& loop : changes.added) done = done && my.insert_edge(loop, "loop");
+  for (const LoopEdge& loop : changes.removed) done = done && my.remove(loop);
+  for (const SessionEvent& event : changes.events) done = done && my.insert(event);
+  return my.end(done && my.move_keyframes(changes.poses));
 }
 
 std::string_view SessionStore::error() const { return impl_->error; }

@@ -4,17 +4,38 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "driver/core/sensor_info.hpp"
 #include "slam/config.hpp"
 #include "slam/keyframe.hpp"
+#include "slam/loop_edge.hpp"
 
 namespace glint::slam {
 
+/// An event for the session file: `data` is a JSON object.
+struct SessionEvent {
+  SensorTime stamp;
+  std::string kind;
+  std::string data;
+};
+
+/// What closing loops changes in the session file.
+struct LoopChanges {
+  std::vector<SessionEvent> events;
+  std::vector<LoopEdge> added;
+  std::vector<LoopEdge> removed;
+  /// Keyframes and their new T_map_sensor.
+  std::vector<std::pair<std::uint64_t, Pose>> poses;
+};
+
 /// The session file: one SQLite database (WAL) that holds each keyframe from the moment it is
 /// added. Schema version 1: tables `meta` (key, value; says how poses and points are packed),
-/// `keyframes`, `edges` (relative poses between keyframes with their covariance), `events`.
+/// `keyframes`, `edges` (relative poses between keyframes with their covariance, of kind `odometry`
+/// or `loop`), `events`.
 /// Thread-compatible; owned by the back end.
 class SessionStore {
  public:
@@ -31,8 +52,8 @@ class SessionStore {
   /// the file could not be written (disk full); error() then says why, and the next call tries
   /// anew.
   [[nodiscard]] bool add(const Keyframe& keyframe, const Pose& T_map_sensor);
-  /// Commits an event: `data` is a JSON object.
-  [[nodiscard]] bool add_event(SensorTime stamp, std::string_view kind, std::string_view data);
+  /// Commits all of it or, when it fails as add() can, none.
+  [[nodiscard]] bool apply(const LoopChanges& changes);
   [[nodiscard]] std::string_view error() const;
 
  private:

@@ -95,9 +95,37 @@ TEST_F(SessionStoreTest, NoEdgeJoinsSegments) {
 
 TEST_F(SessionStoreTest, EventsAndMetaAreKept) {
   SessionStore store(file_, {});
-  ASSERT_TRUE(store.add_event({5}, "tracking", R"({"state":"LOST"})"));
+  ASSERT_TRUE(store.apply({{{{5}, "tracking", R"({"state":"LOST"})"}}, {}, {}, {}}));
   EXPECT_EQ(query("SELECT data FROM events WHERE t_ns=5"), R"({"state":"LOST"})");
   EXPECT_EQ(query("SELECT value FROM meta WHERE key='schema_version'"), "1");
+}
+
+TEST_F(SessionStoreTest, ALoopMovesKeyframesAndNothingElseOfThem) {
+  SessionStore store(file_, {});
+  for (std::uint64_t id = 0; id < 3; ++id) ASSERT_TRUE(store.add(keyframe(id), {}));
+  const std::string points = query("SELECT points FROM keyframes WHERE id=2");
+  const LoopEdge loop{0, 2, {}, Eigen::Matrix<double, 6, 6>::Identity()};
+  const Pose moved{Eigen::Quaterniond::Identity(), {7.5, 0, 0}};
+  ASSERT_TRUE(store.apply({{}, {loop}, {}, {{1, moved}, {2, moved}}}));
+  EXPECT_EQ(query("SELECT count(*) FROM edges WHERE kind='loop'"), "1");
+  const std::string pose = query("SELECT T_map_sensor FROM keyframes WHERE id=2");
+  double x_m = 0.0;
+  ASSERT_EQ(pose.size(), 7 * sizeof(double));
+  std::memcpy(&x_m, pose.data(), sizeof x_m);
+  EXPECT_DOUBLE_EQ(x_m, 7.5);
+  EXPECT_EQ(query("SELECT points FROM keyframes WHERE id=2"), points);
+  ASSERT_TRUE(store.apply({{}, {}, {loop}, {}}));
+  EXPECT_EQ(query("SELECT count(*) FROM edges WHERE kind='loop'"), "0");
+  EXPECT_EQ(query("SELECT count(*) FROM edges WHERE kind='odometry'"), "2");
+}
+
+TEST_F(SessionStoreTest, ChangesThatFailLeaveNothingBehind) {
+  SessionStore store(file_, {});
+  ASSERT_TRUE(store.add(keyframe(0), {}));
+  EXPECT_FALSE(store.apply({{{{5}, "loop", "{}"}}, {}, {}, {{77, {}}}}));  // no such keyframe
+  EXPECT_NE(store.error(), "");
+  EXPECT_EQ(query("SELECT count(*) FROM events"), "0");
+  EXPECT_TRUE(store.add(keyframe(1), {}));
 }
 
 TEST_F(SessionStoreTest, TheSensorIsTheOneSetLast) {

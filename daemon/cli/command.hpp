@@ -27,6 +27,7 @@ class ConnectionError : public std::runtime_error {
 // other exception (1) with one sentence to print.
 void add_replay(CLI::App& app);
 void add_dump(CLI::App& app);
+void add_train_vocabulary(CLI::App& app);
 void add_info(CLI::App& app);
 void add_simulate(CLI::App& app);
 void add_emulate(CLI::App& app);

@@ -25,6 +25,7 @@ int run(int argc, char** argv) {
   add_dump(app);
   add_info(app);
   add_simulate(app);
+  add_train_vocabulary(app);
   add_emulate(app);
   add_record(app);
   add_doctor(app);

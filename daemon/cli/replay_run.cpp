@@ -20,7 +20,7 @@ class Replay {
         clock_(daemon::stage_clock()),
         assembler_(info),
         frontend_(info, options.slam, clock_, options.R_base_sensor),
-        backend_(options.slam, options.session_file, clock_) {
+        backend_(options.slam, options.session_file, clock_, options.loops) {
     backend_.use_sensor(info);
   }
 
@@ -39,7 +39,13 @@ class Replay {
       assembler_.flush();
       process_scans();
     }
+    backend_.finish();
+    take_loops();
+    // No scan waited for it, but its time was spent.
+    result_.stages.add(backend_.stage_times());
     result_.map = backend_.snapshot();
+    result_.loops_accepted = backend_.loops_accepted();
+    result_.loops_rejected = backend_.loops_rejected();
     result_.correction = backend_.correction();
     result_.packets = assembler_.counters();
     result_.store_failures = backend_.store_failures();
@@ -55,6 +61,11 @@ class Replay {
     static_cast<void>(assembler_.push(packet.bytes));
   }
 
+  void take_loops() {
+    const auto& reports = backend_.loop_reports();
+    result_.loops.insert(result_.loops.end(), reports.begin(), reports.end());
+  }
+
   void process_scans() {
     while (const LidarScan* scan = going_ ? assembler_.next() : nullptr) process(*scan);
   }
@@ -68,9 +79,12 @@ class Replay {
     decode_times_ = {};
     if (const auto keyframe = frontend_.take_keyframe()) {
       backend_.process(*keyframe);
-      constexpr auto kBackend = static_cast<std::size_t>(slam::Stage::kBackend);
-      times.wall_ns[kBackend] = backend_.last_wall_ns();
-      times.cpu_ns[kBackend] = backend_.last_cpu_ns();
+      take_loops();
+      for (const slam::Stage stage : {slam::Stage::kPgo, slam::Stage::kBackend}) {
+        const auto i = static_cast<std::size_t>(stage);
+        times.wall_ns[i] = backend_.stage_times().wall_ns[i];
+        times.cpu_ns[i] = backend_.stage_times().cpu_ns[i];
+      }
     }
     result_.stages.add(times);
     const std::uint64_t scans = result_.estimates.size();

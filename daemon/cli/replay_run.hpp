@@ -28,6 +28,9 @@ struct ReplayResult {
   std::shared_ptr<const slam::MapSnapshot> map;
   slam::MapCorrection correction;
   AssemblerCounters packets;
+  std::vector<slam::LoopReport> loops;  ///< Every candidate, in order.
+  std::uint64_t loops_accepted = 0;
+  std::uint64_t loops_rejected = 0;
   std::uint64_t store_failures = 0;
   std::string store_error;
   std::string source_error;  ///< Why the capture could not be read to its end; empty if it was.
@@ -35,8 +38,15 @@ struct ReplayResult {
   double wall_s = 0.0;
 };
 
+/// The pose in the map, by all that the capture held.
+inline Pose map_pose(const ReplayResult& result, const slam::OdometryEstimate& estimate) {
+  return result.correction.map_pose(estimate.segment, static_cast<double>(estimate.sequence),
+                                    estimate.T_odom_sensor);
+}
+
 struct ReplayOptions {
   slam::SlamConfig slam;
+  slam::LoopSource loops;                                             ///< As Backend has it.
   Eigen::Quaterniond R_base_sensor = Eigen::Quaterniond::Identity();  ///< As Frontend has it.
   std::filesystem::path session_file;
   std::uint64_t max_scans = 0;  ///< 0: all.

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string_view>
 
 #include "daemon/base64.hpp"
@@ -50,7 +51,7 @@ std::string trajectory_section(const ReplayResult& result) {
   Curve height;
   for (const slam::OdometryEstimate& estimate : result.estimates) {
     if (!has_pose(estimate)) continue;
-    const Pose pose = result.correction.T_map_odom * estimate.T_odom_sensor;
+    const Pose pose = map_pose(result, estimate);
     above.points.emplace_back(pose.translation_m.x(), pose.translation_m.y());
     height.points.emplace_back(seconds_from_start(result, estimate), pose.translation_m.z());
   }
@@ -115,6 +116,53 @@ std::string stage_section(const ReplayResult& result) {
          rows + "</table>";
 }
 
+std::string paper_section(const ReplayResult& result) {
+  std::string rows;
+  for (const auto& [name, ms] : result.stages.paper_table()) {
+    rows += fmt::format("<tr><td>{}</td><td>{:.2f} ± {:.2f}</td></tr>", name, ms.mean, ms.std);
+  }
+  return "<h2>As the paper counts, ms</h2><table><tr><th>step</th><th>mean ± σ</th></tr>" + rows +
+         "</table>";
+}
+
+std::string misfit_text(const std::optional<slam::LoopMisfit>& misfit) {
+  if (!misfit) return "";
+  return fmt::format("{:.3f} m, {:.2f}°", misfit->distance_m, misfit->angle_rad * 180.0 / M_PI);
+}
+
+std::string loop_row(const slam::LoopReport& report) {
+  const slam::LoopCandidate& c = report.candidate;
+  return fmt::format(
+      "<tr><td>{} - {}</td><td>{}</td><td>{:.2f}</td><td>{}</td><td>{}</td><td>{:.2f}</td>"
+      "<td>{:.3f}</td><td>{}</td><td>{}</td><td>{:.3f}</td></tr>",
+      c.from, c.to, c.accepted ? "accepted" : html_escaped(c.reason), c.similarity, c.matches,
+      c.inliers, c.overlap, c.rms_m, misfit_text(report.before), misfit_text(report.after),
+      report.correction.distance_m);
+}
+
+// Accepted ones first; of the others no more than a page holds.
+std::string loop_section(const ReplayResult& result) {
+  constexpr std::size_t kMostRows = 1000;
+  std::vector<const slam::LoopReport*> reports;
+  for (const slam::LoopReport& report : result.loops) reports.push_back(&report);
+  std::ranges::stable_partition(reports,
+                                [](const auto* report) { return report->candidate.accepted; });
+  std::string rows;
+  for (std::size_t i = 0; i < std::min(reports.size(), kMostRows); ++i)
+    rows += loop_row(*reports[i]);
+  std::string html = fmt::format("<h2>Loops: {} accepted, {} refused</h2>", result.loops_accepted,
+                                 result.loops_rejected);
+  if (rows.empty()) return html;
+  if (reports.size() > kMostRows) {
+    html += fmt::format("<p>{} more are in the session file.</p>", reports.size() - kMostRows);
+  }
+  return html +
+         "<table><tr><th>keyframes</th><th>verdict</th><th>similarity</th><th>matches</th>"
+         "<th>inliers</th><th>overlap</th><th>rms, m</th><th>off before</th><th>off after</th>"
+         "<th>moved at most, m</th></tr>" +
+         rows + "</table>";
+}
+
 std::string image_section(const ReplayResult& result) {
   if (result.sample_images.empty()) return {};
   std::string html = "<h2>Intensity images</h2>";
@@ -148,8 +196,8 @@ void write_report(const std::filesystem::path& file, const std::string& title,
   if (result.estimates.empty()) {
     html += "<p>The capture held no scan.</p>";
   } else {
-    html += trajectory_section(result) + health_section(result) + stage_section(result) +
-            image_section(result);
+    html += trajectory_section(result) + loop_section(result) + health_section(result) +
+            paper_section(result) + stage_section(result) + image_section(result);
   }
   html += summary_section(summary) + "</html>\n";
   write_text_file(file, html);

@@ -11,7 +11,8 @@
 namespace glint::cli {
 
 /// Writes `report.html`: one file that needs no network, with the trajectory from above and in
-/// height, tracking over time, the time of each stage, and sample intensity images.
+/// height, loops accepted and refused, tracking over time, the time of each stage, and sample
+/// intensity images.
 /// `title` is the capture's name; `summary` the content of summary.json. @throws InputError.
 void write_report(const std::filesystem::path& file, const std::string& title,
                   const nlohmann::ordered_json& summary, const ReplayResult& result);

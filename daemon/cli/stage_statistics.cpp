@@ -44,6 +44,12 @@ void StageStatistics::add(const slam::StageTimes& times) {
   for (std::size_t i = 0; i < slam::kStageCount; ++i) {
     if (times.wall_ns[i] > 0) add(static_cast<slam::Stage>(i), times.wall_ns[i], times.cpu_ns[i]);
   }
+  const std::int64_t registration_ns =
+      times.wall_ns[static_cast<std::size_t>(slam::Stage::kMatching)] +
+      times.wall_ns[static_cast<std::size_t>(slam::Stage::kRegistration)];
+  if (registration_ns > 0) {
+    scan_registration_ms_.push_back(static_cast<double>(registration_ns) * kMsPerNs);
+  }
 }
 
 StageSummary StageStatistics::wall(slam::Stage stage) const {
@@ -52,6 +58,13 @@ StageSummary StageStatistics::wall(slam::Stage stage) const {
 
 StageSummary StageStatistics::cpu(slam::Stage stage) const {
   return summarize(cpu_ms_[static_cast<std::size_t>(stage)]);
+}
+
+std::array<std::pair<std::string_view, StageSummary>, 4> StageStatistics::paper_table() const {
+  return {{{"features", wall(slam::Stage::kFeatures)},
+           {"scan_registration", summarize(scan_registration_ms_)},
+           {"map_optimization", wall(slam::Stage::kMapOptimization)},
+           {"pgo", wall(slam::Stage::kPgo)}}};
 }
 
 nlohmann::ordered_json StageStatistics::to_json(bool cpu) const {

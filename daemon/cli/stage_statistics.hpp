@@ -5,6 +5,8 @@
 #include <array>
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "slam/stage_times.hpp"
@@ -25,6 +27,9 @@ class StageStatistics {
 
   [[nodiscard]] StageSummary wall(slam::Stage stage) const;
   [[nodiscard]] StageSummary cpu(slam::Stage stage) const;
+  /// What the paper's own table has, by wall: features, scan registration (with matching), map
+  /// optimisation, PGO.
+  [[nodiscard]] std::array<std::pair<std::string_view, StageSummary>, 4> paper_table() const;
   /// `summary.json`'s object: stage name -> {mean, std, p50, p95, p99, max}.
   [[nodiscard]] nlohmann::ordered_json to_json(bool cpu) const;
 
@@ -32,6 +37,7 @@ class StageStatistics {
   using Samples = std::array<std::vector<double>, slam::kStageCount>;
   Samples wall_ms_;
   Samples cpu_ms_;
+  std::vector<double> scan_registration_ms_;  ///< Matching and registration together, wall.
 };
 
 }  // namespace glint::cli

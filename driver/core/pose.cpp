@@ -68,6 +68,15 @@ Twist se3_log(const Pose& pose) {
   return twist;
 }
 
+Eigen::Matrix<double, 6, 6> adjoint(const Pose& T_a_b) {
+  const Eigen::Matrix3d r = T_a_b.rotation.toRotationMatrix();
+  Eigen::Matrix<double, 6, 6> out = Eigen::Matrix<double, 6, 6>::Zero();
+  out.topLeftCorner<3, 3>() = r;
+  out.topRightCorner<3, 3>() = skew(T_a_b.translation_m) * r;
+  out.bottomRightCorner<3, 3>() = r;
+  return out;
+}
+
 Pose interpolate(const Pose& a, const Pose& b, double fraction) {
   return a * se3_exp(fraction * se3_log(a.inverse() * b));
 }

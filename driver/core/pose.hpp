@@ -35,6 +35,9 @@ Eigen::Vector3d so3_log(const Eigen::Quaterniond& rotation);
 /// SE(3) exponential and logarithm (Sola 2018, "A micro Lie theory", eqs. 172-176).
 Pose se3_exp(const Twist& twist);
 Twist se3_log(const Pose& pose);
+/// Takes twists, and right perturbations, at b to the same motion seen at a: exp(adjoint(T) x) =
+/// T exp(x) T^-1 for T = T_a_b.
+Eigen::Matrix<double, 6, 6> adjoint(const Pose& T_a_b);
 /// The pose a fraction of the way from `a` (0) to `b` (1) at constant body velocity; extrapolates.
 Pose interpolate(const Pose& a, const Pose& b, double fraction);
 

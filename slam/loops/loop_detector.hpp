@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "slam/keyframe.hpp"
+#include "slam/loop_edge.hpp"
+#include "slam/loops/loop_evidence.hpp"
+#include "slam/loops/loop_verifier.hpp"
+#include "slam/loops/place.hpp"
+#include "slam/loops/place_index.hpp"
+#include "slam/loops/vocabulary.hpp"
+
+namespace glint::slam {
+
+/// Finds keyframes that see a place again, by what it looks like: bags of visual words propose
+/// older keyframes, three keyframes in a row must point to the same place, LoopVerifier looks at
+/// each, nothing may show that it is another place of the same make (look_alike.hpp), and several
+/// keyframes must bear one another out (loop_evidence.hpp). When in doubt it is no loop. The poses
+/// need not be near one another; they serve to put neighbouring keyframes together and to refuse
+/// what no odometry errs by. What is kept of a keyframe is bounded, see Place. The result depends
+/// on the keyframes alone. Thread-compatible.
+class LoopDetector {
+ public:
+  explicit LoopDetector(std::shared_ptr<const Vocabulary> vocabulary);
+
+  /// Takes keyframes in order, those of a segment one after the other. At most one loop a keyframe;
+  /// not in keyframes that follow a loop closely.
+  std::optional<LoopEdge> add(const Keyframe& keyframe);
+  /// What the last add() looked at closely, whether it became a loop or not.
+  [[nodiscard]] const std::vector<LoopCandidate>& candidates() const { return candidates_; }
+
+ private:
+  /// Older keyframes next to one another that look like the current one.
+  struct Region {
+    std::size_t best = 0;     ///< The one most alike.
+    double similarity = 0.0;  ///< Relative to that of neighbouring keyframes.
+    int streak = 1;           ///< Keyframes in a row that pointed here.
+  };
+  /// A candidate whose surfaces fit.
+  struct Judged {
+    std::size_t candidate = 0;
+    LoopEdge edge;
+    PlacePair pair;
+    bool alike = false;  ///< Nothing shows that it is another place.
+  };
+
+  void append(const Keyframe& keyframe);
+  void let_places_age();
+  void propose(const BagOfWords& bag);
+  [[nodiscard]] int streak_at(std::size_t entry) const;
+  std::optional<LoopEdge> verify();
+  void judge(std::size_t entry, LoopCandidate& candidate);
+  [[nodiscard]] const Judged* choose() const;
+  std::optional<LoopEdge> refuse(const char* reason);
+  [[nodiscard]] bool believable(const LoopEdge& edge, const Place& older,
+                                const Place& current) const;
+  [[nodiscard]] bool contradicted(std::size_t entry, const Pose& T_older_current) const;
+  [[nodiscard]] std::span<const Place> around(std::size_t entry, std::size_t reach) const;
+
+  const std::shared_ptr<const Vocabulary> vocabulary_;
+  PlaceIndex index_;
+  LoopVerifier verifier_;
+  std::vector<Place> places_;  ///< The current one is the last.
+  SensorTime last_stamp_;
+  BagOfWords last_bag_;
+  std::size_t aged_ = 0;  ///< Places before this one are old enough to be found again.
+  LoopEvidence evidence_;
+  std::vector<Region> regions_;       ///< Of the current keyframe, the likeliest first.
+  std::vector<Region> last_regions_;  ///< Of the one before.
+  std::vector<LoopCandidate> candidates_;
+  std::vector<Judged> judged_;  ///< Of the current keyframe; no two of them agree.
+};
+
+}  // namespace glint::slam

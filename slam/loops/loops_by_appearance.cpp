@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#include "slam/loops/loops_by_appearance.hpp"
+
+#include <memory>
+
+#include "slam/loops/loop_detector.hpp"
+
+namespace glint::slam {
+
+LoopSource loops_by_appearance(const SlamConfig& config) {
+  if (!config.loops) return {};
+  // Shared, for a function must be copyable.
+  const auto detector = std::make_shared<LoopDetector>(open_vocabulary(config.vocabulary));
+  return [detector](const Keyframe& keyframe) {
+    LoopSearch search;
+    search.edge = detector->add(keyframe);
+    search.candidates = detector->candidates();
+    return search;
+  };
+}
+
+}  // namespace glint::slam

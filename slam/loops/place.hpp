@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "driver/core/pose.hpp"
+#include "slam/features.hpp"
+#include "slam/keyframe.hpp"
+
+namespace glint::slam {
+
+/// What is kept of a keyframe to find its place again: some 50 kB at most. Value type.
+struct Place {
+  std::uint64_t id = 0;  ///< Of the keyframe.
+  std::uint32_t segment = 0;
+  double time_s = 0.0;  ///< Since the first keyframe.
+  double path_m = 0.0;  ///< Way travelled until then.
+  Pose T_odom_sensor;
+  /// Keypoints, the strongest first; entry i of each belongs together. Sensor frame, m.
+  std::vector<Descriptor> descriptors;
+  std::vector<Eigen::Vector3f> keypoints_m;
+  /// Points all around, one in each cube of edge voxel_m. Sensor frame, m.
+  std::vector<Eigen::Vector3f> points_m;
+  float voxel_m = 0.0F;
+};
+
+struct PlaceOptions {
+  std::size_t most_keypoints = 500;  ///< The strongest corners.
+  std::size_t most_points = 2000;
+  float finest_voxel_m = 0.25F;  ///< Points are thinned to one a voxel at least this large.
+};
+
+/// Keeps the strongest keypoints and thinned points of a keyframe; leaves time and path at zero.
+Place make_place(const Keyframe& keyframe, const PlaceOptions& options = {});
+
+}  // namespace glint::slam

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "driver/core/pose.hpp"
+
+namespace glint::slam {
+
+/// Where a keyframe puts the odometry frame in the map.
+struct CorrectionAnchor {
+  std::uint32_t segment = 0;
+  std::uint64_t sequence = 0;  ///< Of the keyframe's scan.
+  Pose T_map_odom;
+};
+
+/// What the back end tells odometry and clients: where the odometry frame lies in the map frame.
+/// `epoch` steps each time it jumps. Immutable; may be read anywhere.
+struct MapCorrection {
+  /// For what comes after the last anchor: the newest poses, and segments that begin later.
+  Pose T_map_odom;
+  std::uint32_t epoch = 0;
+  /// Of the keyframes until the jump, by segment and sequence; null: T_map_odom holds for all.
+  std::shared_ptr<const std::vector<CorrectionAnchor>> anchors;
+
+  /// The pose in the map of the scan `sequence` (a fraction: between two scans): as the keyframes
+  /// before and after it in its segment have it, in proportion. At a keyframe, that keyframe's.
+  [[nodiscard]] Pose map_pose(std::uint32_t segment, double sequence,
+                              const Pose& T_odom_sensor) const;
+};
+
+}  // namespace glint::slam

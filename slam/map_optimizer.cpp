@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#include "slam/map_optimizer.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace glint::slam {
+namespace {
+
+// Associations are made anew while a solution moves the scan by more than this.
+constexpr double kSettled_m = 0.03;
+constexpr double kSettled_rad = 0.002;
+// A point that the sensor's turning displaced by more, in a scan that is taken as rigid, would blur
+// the map.
+constexpr double kDisplaced_m = 0.1;
+// With fewer residuals there is nothing to be said.
+constexpr std::size_t kFewestTerms = 30;
+
+PlaneFeatureOptions plane_options(const SlamConfig& config) {
+  PlaneFeatureOptions options;
+  options.wanted_points = config.plane_points;
+  return options;
+}
+
+GroundOptions ground_options(const SlamConfig& config) {
+  GroundOptions options;
+  options.sensor_height_m = config.sensor_height_m;
+  return options;
+}
+
+LocalMapOptions map_options(const SlamConfig& config) {
+  LocalMapOptions options;
+  options.neighbours = config.plane_neighbours;
+  options.voxel_m = config.local_map_voxel_m;
+  options.radius_m = config.local_map_radius_m;
+  options.ground_weight = config.ground_weight;
+  return options;
+}
+
+WindowOptions window_options(const SlamConfig& config) {
+  WindowOptions options;
+  options.frames = config.ba_frames;
+  options.max_hamming_bits = config.match_max_distance;
+  return options;
+}
+
+Eigen::Vector2d column_direction(const XyzLut& lut, int column) {
+  return lut.point(0, column, 100'000).head<2>().normalized();
+}
+
+Eigen::Vector2d middle_direction(const SensorInfo& info, const XyzLut& lut) {
+  return column_direction(lut, info.columns_per_frame / 2);
+}
+
+double beam_turn_radps(const SensorInfo& info, const XyzLut& lut) {
+  const Eigen::Vector2d a = middle_direction(info, lut);
+  const Eigen::Vector2d b = column_direction(lut, info.columns_per_frame * 5 / 8);
+  const double turn_s = static_cast<double>(info.scan_period_ns()) * 1e-9;
+  return (a.x() * b.y() - a.y() * b.x() > 0 ? 2.0 : -2.0) * std::numbers::pi / turn_s;
+}
+
+}  // namespace
+
+MapOptimizer::MapOptimizer(const SensorInfo& info, const SlamConfig& config,
+                           std::shared_ptr<const XyzLut> lut)
+    : config_(config),
+      middle_(middle_direction(info, *lut)),
+      turn_radps_(beam_turn_radps(info, *lut)),
+      extractor_(info, plane_options(config), std::move(lut)),
+      ground_finder_(ground_options(config)),
+      map_(map_options(config)),
+      window_(window_options(config)) {}
+
+void MapOptimizer::observe(const LidarScan& scan, const ScanImages& images,
+                           const ConstantVelocity* motion, const Eigen::Vector3d& up) {
+  rigid_ = motion == nullptr;
+  points_m_.clear();
+  ground_count_ = 0;
+  ground_plane_.reset();
+  if (!config_.planes) return;
+  points_m_ = extractor_.extract(scan, images, motion);
+  if (config_.ground) ground_plane_ = ground_finder_.find(points_m_, up, &ground_count_);
+}
+
+MapOptimization MapOptimizer::optimize(const Features& features, const std::vector<Match>& matches,
+                                       const Pose& start) {
+  MapOptimization outcome;
+  Pose pose = start;
+  JointResult result;
+  for (int round = 0; round < config_.map_rounds; ++round) {
+    map_.associate(points_m_, ground_count_, pose, planes_);
+    // Keypoints are told apart by their looks: they keep their partners.
+    if (round == 0) associate_keypoints(features, matches, pose);
+    if (planes_.size() + points_.size() < kFewestTerms) return outcome;
+    result = optimize_jointly(pose, planes_, points_);
+    if (!result.ok) return outcome;
+    const bool done = settled(pose, result.T_odom_scan);
+    pose = result.T_odom_scan;
+    if (done) break;
+  }
+  outcome.T_odom_scan = pose;
+  outcome.plane_terms = static_cast<int>(planes_.size());
+  outcome.overlap = points_m_.empty() ? 0.0
+                                      : static_cast<double>(planes_.size()) /
+                                            static_cast<double>(points_m_.size());
+  outcome.plane_rms_m = result.plane_rms_m;
+  outcome.point_terms = static_cast<int>(points_.size());
+  const double variance_m2 = std::max(
+      1e-4, result.plane_rms_m * result.plane_rms_m + result.point_rms_m * result.point_rms_m);
+  outcome.covariance = variance_m2 * result.hessian.inverse();
+  outcome.ok = outcome.covariance.allFinite();
+  return outcome;
+}
+
+void MapOptimizer::associate_keypoints(const Features& features, const std::vector<Match>& matches,
+                                       const Pose& pose) {
+  points_.clear();
+  if (config_.ba) points_ = window_.associate(features, matches, pose);
+  for (PointTerm& term : points_) term.weight *= config_.ba_weight;
+}
+
+void MapOptimizer::drop_displaced(const Eigen::Vector3d& turn_radps) {
+  std::size_t kept = 0;
+  std::size_t kept_ground = 0;
+  for (std::size_t i = 0; i < points_m_.size(); ++i) {
+    const Eigen::Vector3d speed_mps = turn_radps.cross(points_m_[i].cast<double>());
+    if (speed_mps.norm() * std::abs(seconds_from_middle(points_m_[i])) > kDisplaced_m) continue;
+    if (i < ground_count_) ++kept_ground;
+    points_m_[kept++] = points_m_[i];
+  }
+  points_m_.resize(kept);
+  ground_count_ = kept_ground;
+}
+
+// By its direction: the beams turn evenly.
+double MapOptimizer::seconds_from_middle(const Eigen::Vector3f& point_m) const {
+  const Eigen::Vector2d p = point_m.head<2>().cast<double>();
+  const double angle_rad = std::atan2(middle_.x() * p.y() - middle_.y() * p.x(), middle_.dot(p));
+  return angle_rad / turn_radps_;
+}
+
+bool MapOptimizer::settled(const Pose& from, const Pose& to) const {
+  const Pose step = from.inverse() * to;
+  return step.translation_m.norm() < kSettled_m && so3_log(step.rotation).norm() < kSettled_rad;
+}
+
+void MapOptimizer::remember(const Features& features, const std::vector<Match>& matches,
+                            const Pose& T_odom_scan, const Twist& velocity) {
+  if (rigid_) drop_displaced(velocity.tail<3>());
+  map_.add(points_m_, ground_count_, T_odom_scan);
+  if (config_.ba) window_.push(features, matches, T_odom_scan);
+}
+
+void MapOptimizer::reset() {
+  map_.clear();
+  window_.clear();
+  ground_finder_.reset();
+}
+
+}  // namespace glint::slam
