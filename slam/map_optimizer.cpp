@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace glint::slam {
 namespace {
@@ -151,6 +152,12 @@ void MapOptimizer::remember(const Features& features, const std::vector<Match>& 
                             const Pose& T_odom_scan, const Twist& velocity) {
   if (rigid_) drop_displaced(velocity.tail<3>());
   map_.add(points_m_, ground_count_, T_odom_scan);
+  // One large subtree a scan, here: some milliseconds now and then, and the result depends on the
+  // scans alone.
+  if (auto rebuild = map_.take_rebuild()) {
+    rebuild->tree.run();
+    map_.adopt(std::move(*rebuild));
+  }
   if (config_.ba) window_.push(features, matches, T_odom_scan);
 }
 
