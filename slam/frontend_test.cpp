@@ -99,7 +99,7 @@ TEST_F(FrontendTest, SurfacesAloneFollowARoom) {
   for (const LidarScan& scan : *scans_) {
     const OdometryEstimate& estimate = frontend.process(scan);
     EXPECT_EQ(estimate.keypoints, 0);
-    EXPECT_LT(way_error_m({}, scans_->front(), estimate), 0.15);
+    EXPECT_LT(way_error_m({}, scans_->front(), estimate), 0.3);
   }
 }
 
