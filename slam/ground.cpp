@@ -38,10 +38,12 @@ std::optional<GroundPlane> GroundFinder::find(std::span<Eigen::Vector3f> points_
   if (!plane || !plausible(*plane, up)) return std::nullopt;
   height_m_ =
       height_m_ ? *height_m_ + kHeightGain * (plane->height_m - *height_m_) : plane->height_m;
-  const auto others = std::ranges::stable_partition(points_m, [&](const Eigen::Vector3f& p) {
-    return std::abs(distance(*plane, p.cast<double>())) < options_.inlier_m;
-  });
-  *ground_count = points_m.size() - others.size();
+  // Not std::ranges', which clang-14 cannot read in g++ 12's library.
+  const auto others =
+      std::stable_partition(points_m.begin(), points_m.end(), [&](const Eigen::Vector3f& p) {
+        return std::abs(distance(*plane, p.cast<double>())) < options_.inlier_m;
+      });
+  *ground_count = static_cast<std::size_t>(others - points_m.begin());
   return plane;
 }
 
