@@ -221,25 +221,30 @@ Neighbours IncKdTree::nearest(const Eigen::Vector3f& query, int k, float max_dis
   return found;
 }
 
+namespace {
+
+// Puts a point in its place among the `k` nearest; `limit` is what the next one must beat.
+void offer(const Eigen::Vector3f& point, float distance, int k, float& limit, Neighbours& found) {
+  if (distance > limit || k <= 0) return;
+  int place = std::min(found.count, k - 1);
+  if (found.count < k) ++found.count;
+  auto& items = found.items;
+  for (; place > 0; --place) {
+    const auto before = static_cast<std::size_t>(place - 1);
+    if (items[before].squared_distance_m2 <= distance) break;
+    items[before + 1] = items[before];
+  }
+  items[static_cast<std::size_t>(place)] = {point, distance};
+  if (found.count == k) limit = found[k - 1].squared_distance_m2;
+}
+
+}  // namespace
+
 void IncKdTree::search(Index i, const Eigen::Vector3f& query, int k, float& limit,
                        Neighbours& found) const {
   const Node& node = at(i);
   if (node.deleted_count == node.size) return;
-  if (!node.deleted) {
-    const float distance = (node.point - query).squaredNorm();
-    if (distance <= limit && k > 0) {
-      int place = std::min(found.count, k - 1);
-      if (found.count < k) ++found.count;
-      auto& items = found.items;
-      for (; place > 0; --place) {
-        const auto before = static_cast<std::size_t>(place - 1);
-        if (items[before].squared_distance_m2 <= distance) break;
-        items[before + 1] = items[before];
-      }
-      items[static_cast<std::size_t>(place)] = {node.point, distance};
-      if (found.count == k) limit = found[k - 1].squared_distance_m2;
-    }
-  }
+  if (!node.deleted) offer(node.point, (node.point - query).squaredNorm(), k, limit, found);
   const auto away = [&](Index child) {
     return child == kNone ? std::numeric_limits<float>::infinity()
                           : at(child).box.squared_distance(query);
