@@ -145,8 +145,8 @@ std::string loop_section(const ReplayResult& result) {
   constexpr std::size_t kMostRows = 1000;
   std::vector<const slam::LoopReport*> reports;
   for (const slam::LoopReport& report : result.loops) reports.push_back(&report);
-  std::ranges::stable_partition(reports,
-                                [](const auto* report) { return report->candidate.accepted; });
+  std::stable_partition(reports.begin(), reports.end(),
+                        [](const auto* report) { return report->candidate.accepted; });
   std::string rows;
   for (std::size_t i = 0; i < std::min(reports.size(), kMostRows); ++i)
     rows += loop_row(*reports[i]);

@@ -171,8 +171,7 @@ Vocabulary train_vocabulary(std::span<const std::vector<Descriptor>> images,
     seen.reserve(image.size());
     for (const Descriptor& descriptor : image) seen.push_back(tree.word_of(descriptor));
     std::ranges::sort(seen);
-    const auto rest = std::ranges::unique(seen);
-    seen.erase(rest.begin(), rest.end());
+    seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
     for (const std::uint32_t word : seen) ++images_with_word[word];
   }
   return {std::move(nodes), std::move(images_with_word), count};
