@@ -136,6 +136,7 @@ class LiveDaemon {
     // Enough for the room, and quick in a slow build.
     config_.slam.orb_features = 300;
     config_.slam.match_max = 60;
+    config_.slam.planes = config_.slam.ba = config_.slam.loops = false;
     emulator_options_.sensor.reinitialise_ns = 20 * kMs_ns;
     emulator_options_.sensor.boot_ns = 30 * kMs_ns;
     streamer_.set_sensor(room_sensor());
