@@ -17,14 +17,13 @@ namespace {
 
 using test::Bytes;
 using test::FakeSource;
+using test::has_poses;
 using test::room_packets;
 using test::TestDaemon;
 using namespace std::chrono_literals;
 
 constexpr std::int64_t kPacketsPerScan = 512 / 16;
 constexpr std::int64_t kPacketGap_ns = 100'000'000 / kPacketsPerScan;
-
-bool has_poses(const Json& status, int count) { return status["counters"]["poses"] == count; }
 
 std::int64_t integer(const Json& json, const char* key) { return json[key].get<std::int64_t>(); }
 

@@ -105,6 +105,17 @@ constexpr std::array kKeys{
               "Returns nearer than this are the robot itself."},
     ConfigKey{"slam.deskew", &at<&Config::slam, &SlamConfig::deskew>, 0, 0, "", "",
               "Bring the points of a scan to its end by the motion of the last scan."},
+    ConfigKey{"slam.gyro", &at<&Config::slam, &SlamConfig::gyro>, 0, 0, "", "",
+              "Take turns from the gyroscope, where there is one."},
+    ConfigKey{"slam.accelerometer", &at<&Config::slam, &SlamConfig::accelerometer>, 0, 0, "", "",
+              "Take changes of velocity from the accelerometer; only with the gyroscope."},
+    ConfigKey{"slam.motion_prior", &at<&Config::slam, &SlamConfig::motion_prior>, 0, 0, "", "",
+              "Let the motion so far take part in where a scan is placed."},
+    ConfigKey{"slam.degeneracy", &at<&Config::slam, &SlamConfig::degeneracy>, 0, 0, "", "",
+              "Do not ask surfaces along axes that they leave open."},
+    ConfigKey{
+        "slam.image_filter", &at<&Config::slam, &SlamConfig::image_filter>, 0, 0, "", "",
+        "Even out the intensity image's brightness and its beams before keypoints are taken."},
     ConfigKey{"slam.orb_features", &at<&Config::slam, &SlamConfig::orb_features>, 50, 10000, "", "",
               "Most keypoints taken from an image."},
     ConfigKey{"slam.orb_levels", &at<&Config::slam, &SlamConfig::orb_levels>, 1, 8, "", "",
@@ -143,24 +154,43 @@ constexpr std::array kKeys{
               "Tell the ground from other surfaces."},
     ConfigKey{"slam.ba", &at<&Config::slam, &SlamConfig::ba>, 0, 0, "", "",
               "Hold a scan's keypoints against those of the last scans."},
-    ConfigKey{"slam.sensor_height_m", &at<&Config::slam, &SlamConfig::sensor_height_m>, 0, 100, "m",
-              "", "Height of the sensor above the ground. 0: that of the dominant low plane."},
+    ConfigKey{"slam.sensor_height_m", &at<&Config::slam, &SlamConfig::sensor_height_m>, 0.05, 100,
+              "m", "auto",
+              "Height of the sensor above the ground. auto: that of the dominant low plane."},
     ConfigKey{"slam.ground_weight", &at<&Config::slam, &SlamConfig::ground_weight>, 0, 100, "", "",
               "Weight of the ground to that of other surfaces."},
+    ConfigKey{
+        "slam.plane_map", &at<&Config::slam, &SlamConfig::plane_map>, 0, 0, "", "voxels|tree",
+        "What odometry keeps surfaces as: planes that average all points, or thinned points."},
     ConfigKey{"slam.plane_points", &at<&Config::slam, &SlamConfig::plane_points>, 100, 20000, "",
               "", "About so many points on surfaces are taken from a scan."},
-    ConfigKey{"slam.plane_neighbours", &at<&Config::slam, &SlamConfig::plane_neighbours>, 3, 8, "",
-              "", "Nearest map points that give a plane: 3 span it, more are fitted."},
+    ConfigKey{
+        "slam.plane_neighbours", &at<&Config::slam, &SlamConfig::plane_neighbours>, 3, 8, "", "",
+        "Of plane_map = tree: nearest map points that give a plane: 3 span it, more are fitted."},
     ConfigKey{"slam.local_map_voxel_m", &at<&Config::slam, &SlamConfig::local_map_voxel_m>, 0.05, 5,
-              "m", "", "The local map keeps one point in cubes of this edge."},
+              "m", "", "Of plane_map = tree: one point is kept in cubes of this edge."},
     ConfigKey{"slam.local_map_radius_m", &at<&Config::slam, &SlamConfig::local_map_radius_m>, 5,
-              1000, "m", "", "Reach of the local map around the sensor, along each axis."},
+              1000, "m", "", "Of plane_map = tree: reach around the sensor, along each axis."},
+    ConfigKey{"slam.local_map_reach_m", &at<&Config::slam, &SlamConfig::local_map_reach_m>, 0,
+              10000, "", "",
+              "Odometry forgets what was left behind by this distance; 0: it does not."},
+    ConfigKey{
+        "slam.moving_objects", &at<&Config::slam, &SlamConfig::moving_objects>, 0, 0, "", "",
+        "Leave out what moves: of the map what comes where keyframes before saw through, of the "
+        "keypoints those that move with the sensor."},
     ConfigKey{"slam.ba_frames", &at<&Config::slam, &SlamConfig::ba_frames>, 1, 100, "scans", "",
               "Last scans whose keypoints are compared."},
     ConfigKey{"slam.ba_weight", &at<&Config::slam, &SlamConfig::ba_weight>, 0, 1000, "", "",
               "Weight of keypoints to that of surfaces."},
+    ConfigKey{"slam.ba_by_noise", &at<&Config::slam, &SlamConfig::ba_by_noise>, 0, 0, "", "",
+              "Keypoints weigh what their residuals show them to be good to."},
     ConfigKey{"slam.map_rounds", &at<&Config::slam, &SlamConfig::map_rounds>, 1, 20, "", "",
               "Most times that a scan's points look for their surfaces anew."},
+    ConfigKey{
+        "slam.load_level", &at<&Config::slam, &SlamConfig::load_level>, 0, 0, "",
+        "auto|none|keypoints|surface_points|keypoints_every_second",
+        "What is left out where the machine is too slow, each with what stands before it. auto: "
+        "as much as a live stream needs; in a replay nothing."},
     ConfigKey{"slam.keyframe_distance_m", &at<&Config::slam, &SlamConfig::keyframe_distance_m>,
               0.01, 100, "m", "", "A keyframe is made after this distance."},
     ConfigKey{"slam.keyframe_angle_rad", &at<&Config::slam, &SlamConfig::keyframe_angle_rad>, 0.01,
@@ -169,6 +199,13 @@ constexpr std::array kKeys{
               10000, "", "", "A keyframe is made when fewer matches remain."},
     ConfigKey{"slam.loops", &at<&Config::slam, &SlamConfig::loops>, 0, 0, "", "",
               "Places seen again are recognised and correct the map."},
+    ConfigKey{"slam.loop_density", &at<&Config::slam, &SlamConfig::loop_density>, 0, 0, "", "",
+              "They are recognised by the shape of what stands around them too, where few beams or "
+              "bare walls leave nothing else."},
+    ConfigKey{"slam.pgo_gravity", &at<&Config::slam, &SlamConfig::pgo_gravity>, 0, 0, "", "",
+              "Keep the map level by what the accelerometer feels."},
+    ConfigKey{"slam.loop_consistency", &at<&Config::slam, &SlamConfig::loop_consistency>, 0, 0, "",
+              "", "Of loops that contradict one another keep the largest set that agrees."},
     ConfigKey{
         "slam.vocabulary", &at<&Config::slam, &SlamConfig::vocabulary>, 0, 0, "", "",
         "File of the visual words that recognise them, see glint train-vocabulary. Empty: the "
@@ -211,9 +248,12 @@ Json value_json(const ConfigKey& key, Config& config) {
   return std::visit(
       [&](auto field) {
         const auto& value = field(config);
-        if constexpr (std::is_same_v<decltype(value), const Pose&>) {
+        using Value = std::remove_cvref_t<decltype(value)>;
+        if constexpr (std::is_same_v<Value, Pose>) {
           const auto& [q, t] = value;
           return Json{t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()};
+        } else if constexpr (std::is_same_v<Value, double>) {
+          return takes_auto(key) && value == kAutoNumber ? Json(kAuto) : Json(value);
         } else {
           return Json(value);
         }
@@ -237,7 +277,8 @@ std::string plain(double value) {
 
 std::string range_comment(const ConfigKey& key) {
   std::string text;
-  if (!key.choices.empty()) text += fmt::format(" One of {}.", key.choices);
+  const bool is_choice = !key.choices.empty() && !takes_auto(key);
+  if (is_choice) text += fmt::format(" One of {}.", key.choices);
   if (key.min < key.max) text += fmt::format(" Range {} to {}", plain(key.min), plain(key.max));
   if (key.min < key.max) text += key.unit.empty() ? "." : fmt::format(" {}.", key.unit);
   return text;

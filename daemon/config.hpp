@@ -87,10 +87,19 @@ struct ConfigKey {
   Accessor field;         ///< The member; its type is the key's type.
   double min = 0.0;       ///< Smallest and largest value of a number, or of each of a list.
   double max = 0.0;
-  std::string_view unit;     ///< Empty for none.
-  std::string_view choices;  ///< Allowed strings, separated by "|"; empty for any.
-  std::string_view doc;      ///< One sentence for the user.
+  std::string_view unit;  ///< Empty for none.
+  /// Allowed strings, separated by "|"; empty for any. Of a number: kAuto, or empty.
+  std::string_view choices;
+  std::string_view doc;  ///< One sentence for the user.
 };
+
+/// What a number may be told as where Glint can find it itself, and how it is kept.
+constexpr std::string_view kAuto = "auto";
+constexpr double kAutoNumber = 0.0;
+/// Whether the key's number may be kAuto.
+inline bool takes_auto(const ConfigKey& key) {
+  return key.choices == kAuto && std::holds_alternative<double& (*)(Config&)>(key.field);
+}
 
 /// Every key there is, in the order of the shipped file.
 std::span<const ConfigKey> config_keys();

@@ -16,7 +16,7 @@ namespace glint::daemon {
 namespace {
 
 /// Keys whose function comes with a later version; a mistake in spelling is not what happened.
-constexpr std::array<std::string_view, 2> kLaterKeys = {"slam.sensor_height_m", "map.on_start"};
+constexpr std::array<std::string_view, 1> kLaterKeys = {"map.on_start"};
 
 const ConfigKey& find_key(std::string_view name, const std::string& where) {
   const auto keys = config_keys();
@@ -33,7 +33,7 @@ const ConfigKey& find_key(std::string_view name, const std::string& where) {
 }
 
 std::string allowed(const ConfigKey& key) {
-  if (!key.choices.empty()) return fmt::format("one of {}", key.choices);
+  if (!key.choices.empty() && !takes_auto(key)) return fmt::format("one of {}", key.choices);
   const std::string unit = key.unit.empty() ? "" : fmt::format(" {}", key.unit);
   constexpr std::array<std::string_view, 6> kTypes = {"true or false",
                                                       "a whole number",
@@ -41,7 +41,8 @@ std::string allowed(const ConfigKey& key) {
                                                       "a string in quotes",
                                                       "seven numbers [x, y, z, qx, qy, qz, qw]",
                                                       "[] or two whole numbers [start, end]"};
-  std::string text(kTypes[key.field.index()]);
+  std::string text(takes_auto(key) ? "\"auto\" or " : "");
+  text += kTypes[key.field.index()];
   if (key.min < key.max) text += fmt::format(" from {} to {}{}", key.min, key.max, unit);
   return text;
 }
@@ -77,6 +78,10 @@ bool read(const ConfigKey& key, const toml::node& node, int& out) {
 }
 
 bool read(const ConfigKey& key, const toml::node& node, double& out) {
+  if (takes_auto(key) && node.value_exact<std::string>() == kAuto) {
+    out = kAutoNumber;
+    return true;
+  }
   if (!node.is_number()) return false;
   const auto value = node.value<double>();
   if (!value || !in_range(key, *value)) return false;

@@ -78,6 +78,17 @@ TEST_F(ConfigTest, AWindowIsTwoNumbersOrNone) {
   }
 }
 
+TEST_F(ConfigTest, ANumberThatGlintCanFindItselfMayBeAuto) {
+  EXPECT_EQ(to_json(config_)["slam"]["sensor_height_m"], "auto");
+  EXPECT_EQ(load_error("[slam]\nsensor_height_m = 1.2\n"), "");
+  EXPECT_EQ(config_.slam.sensor_height_m, 1.2);
+  EXPECT_EQ(setting_error("slam.sensor_height_m=auto"), "");
+  EXPECT_EQ(config_.slam.sensor_height_m, 0.0);
+  EXPECT_THAT(setting_error("slam.sensor_height_m=low"),
+              HasSubstr("\"auto\" or a number from 0.05 to 100 m"));
+  EXPECT_THAT(setting_error("slam.max_speed_mps=auto"), HasSubstr("a number from 0.1"));
+}
+
 TEST_F(ConfigTest, AnUnknownKeyIsAnErrorWithLineAndNearestKey) {
   EXPECT_THAT(load_error("[slam]\n# comment\norb_feature = 3\n"),
               AllOf(HasSubstr("config_test.toml:3"), HasSubstr("'slam.orb_feature'"),

@@ -15,6 +15,7 @@ namespace glint::daemon {
 namespace {
 
 using test::Bytes;
+using test::has_poses;
 using test::room_packets;
 using test::TestDaemon;
 using namespace std::chrono_literals;
@@ -31,8 +32,6 @@ std::vector<slam::OdometryEstimate> replay(const SensorInfo& info,
   }
   return estimates;
 }
-
-bool has_poses(const Json& status, int count) { return status["counters"]["poses"] == count; }
 
 TEST(DaemonTest, EverySubscribedPoseEqualsReplayBitForBit) {
   constexpr int kScans = 8;
@@ -158,7 +157,7 @@ slam::LoopSource loop_at_second_keyframe() {
     slam::LoopSearch found;
     if (keyframe.id != 1) return found;
     const Pose seen{so3_exp({0.0, 0.0, 0.1}), {1.0, 0.0, 0.0}};
-    found.edge = slam::LoopEdge{0, 1, seen, Eigen::Matrix<double, 6, 6>::Identity() * 1e-6};
+    found.edges = {{0, 1, seen, Eigen::Matrix<double, 6, 6>::Identity() * 1e-6}};
     return found;
   };
 }

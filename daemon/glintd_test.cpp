@@ -239,7 +239,7 @@ TEST_F(GlintdTest, TwoSensorsOnOnePortReachTheirOwnDaemonsOnly) {
   EXPECT_THAT(log_, AllOf(HasSubstr("port " + std::to_string(port) + " is held"),
                           HasSubstr("bind address")));
   third.insert(third.end(), {"--set", "sensor.multicast_group=192.0.2.1"});
-  EXPECT_EQ(exit_code(third), 1);
+  EXPECT_EQ(exit_code(third), 78);
   EXPECT_THAT(log_, HasSubstr("multicast group 192.0.2.1 is none"));
 }
 
@@ -290,6 +290,18 @@ TEST_F(GlintdTest, ReloadTellsWhatItCannotChange) {
                                    HasSubstr("log.level is debug")));
   process.signal(SIGINT);
   EXPECT_EQ(process.wait(), 0);
+}
+
+TEST_F(GlintdTest, AddressesThatNoWaitingMakesRightExitWith78) {
+  const fs::path metadata = directory_ / "room.json";
+  std::ofstream(metadata) << to_metadata_json(test::room_sensor());
+  const auto with = [&](const std::string& setting) {
+    return exit_code({"--meta", metadata.string(), "--set", setting, "--set", "server.listen=",
+                      "--set", "server.unix_socket=" + socket(), "--set", "state.directory="});
+  };
+  EXPECT_EQ(with("sensor.bind_address=eth0"), 78);
+  EXPECT_EQ(with("sensor.multicast_group=192.0.2.1"), 78);
+  EXPECT_EQ(with("sensor.bind_address=192.0.2.77"), 1) << "its interface may come up later";
 }
 
 TEST_F(GlintdTest, BadConfigurationsExitWith78AndASentence) {

@@ -41,6 +41,8 @@ void HealthLog::look(const RuntimeStatus& status, std::int64_t now_ns,
   look_at_counter("packets dropped, odometry was too slow", status.packets.dropped, now_ns);
   look_at_counter("packets that never came", packets.missing_packets, now_ns);
   look_at_counter("packets that came too late", packets.late_packets, now_ns);
+  look_at_counter("packets damaged on the way, their checksum is wrong", packets.corrupt_packets,
+                  now_ns);
   look_at_counter("datagrams of another size than the sensor's packets", packets.bad_size, now_ns);
   look_at_counter("datagrams of another type than lidar packets", packets.bad_type, now_ns);
   look_at_counter("packets of another sensor", packets.bad_serial, now_ns);
@@ -48,6 +50,8 @@ void HealthLog::look(const RuntimeStatus& status, std::int64_t now_ns,
                   now_ns);
   look_at_counter("IMU packets that hold no measurement", status.snapshot->imu.bad_packets, now_ns);
   look_at_mount(status.snapshot->imu);
+  look_at_counter("scans of which a part was left out, the machine is too slow (status: load)",
+                  status.snapshot->shed_scans[1], now_ns);
   look_at_counter("keyframes dropped, the back end was too slow",
                   status.snapshot->dropped_keyframes, now_ns);
   look_at_counter("keyframes missing in the session file (" + status.map->store_error + ")",

@@ -90,7 +90,7 @@ UdpPorts udp_ports(const std::optional<SensorInfo>& info, const Config::Sensor& 
   return ports;
 }
 
-std::unique_ptr<UdpSource> open_udp(UdpPorts ports, const Config::Sensor& sensor) {
+std::unique_ptr<UdpSource> open_udp(UdpPorts ports, const Config::Sensor& sensor) try {
   UdpSourceOptions options;
   options.bind_address = sensor.bind_address;
   options.multicast_group = sensor.multicast_group;
@@ -106,6 +106,9 @@ std::unique_ptr<UdpSource> open_udp(UdpPorts ports, const Config::Sensor& sensor
         source->granted_rcvbuf_bytes(), sensor.rcvbuf_bytes, sensor.rcvbuf_bytes);
   }
   return source;
+} catch (const AddressError& error) {
+  // Others, of an interface that is not up yet for one, may come right by themselves.
+  throw ConfigError(fmt::format("[sensor] {}", error.what()));
 }
 
 /// From a file, or from inside a recording if there is none.

@@ -133,7 +133,10 @@ void OdometryThread::take_imu(std::span<const std::byte> bytes) {
     return;
   }
   ++state_.imu.packets;
-  for (const ImuSample& sample : imu_samples_) gravity_.add(sample);
+  for (const ImuSample& sample : imu_samples_) {
+    gravity_.add(sample);
+    stream_->frontend.add_imu(sample);
+  }
 }
 
 void OdometryThread::look_at_clock(const PacketView& packet, HostTime host_time) {
@@ -169,7 +172,9 @@ void OdometryThread::process(const LidarScan& scan) {
     return;
   }
   slam::Frontend& frontend = stream_->frontend;
+  const std::int64_t start_ns = steady_now_ns();
   slam::OdometryEstimate estimate = frontend.process(scan);
+  choose_load(static_cast<double>(steady_now_ns() - start_ns) * kSecondsPerNs);
   state_.host_time = stream_->clock_model.to_host(estimate.stamp).value_or(HostTime{});
   state_.clock = stream_->clock_model.status();
   estimate.stamp = told_time(estimate.stamp);
@@ -189,6 +194,25 @@ void OdometryThread::process(const LidarScan& scan) {
   ++state_.scans;
   const auto snapshot = publish();
   if (on_scan_) on_scan_(snapshot);
+}
+
+// A replay waits for odometry; a sensor does not.
+void OdometryThread::choose_load(double took_s) {
+  for (std::size_t i = 1; i <= static_cast<std::size_t>(state_.load_level); ++i) {
+    ++state_.shed_scans[i];
+  }
+  if (config_.load_level != "auto") {
+    state_.load_level = slam::load_level_of(config_.load_level);
+    return;
+  }
+  if (lossless_) return;
+  const SensorInfo& info = *stream_->info;
+  const double packets_per_scan =
+      static_cast<double>(info.columns_per_frame) / static_cast<double>(info.columns_per_packet);
+  const double waiting_scans = static_cast<double>(crossings_.packets.size()) / packets_per_scan;
+  const double period_s = static_cast<double>(info.scan_period_ns()) * kSecondsPerNs;
+  state_.load_level = governor_.after_scan(took_s, waiting_scans, period_s);
+  stream_->frontend.set_load_level(state_.load_level);
 }
 
 SensorTime OdometryThread::told_time(SensorTime stamp) const {

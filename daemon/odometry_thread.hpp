@@ -12,6 +12,7 @@
 #include "daemon/crossings.hpp"
 #include "daemon/event_log.hpp"
 #include "daemon/heartbeat.hpp"
+#include "daemon/load_governor.hpp"
 #include "driver/core/clock_model.hpp"
 #include "driver/core/gravity.hpp"
 #include "driver/core/imu_packet.hpp"
@@ -63,6 +64,7 @@ class OdometryThread {
   void process(const LidarScan& scan);
   /// The time that clients are told: the sensor's, or that of this machine if they want it.
   [[nodiscard]] SensorTime told_time(SensorTime stamp) const;
+  void choose_load(double took_s);
   void hand_over_keyframe();
   void apply_commands();
   void use_sensor(const UseSensorCommand& use);
@@ -79,6 +81,7 @@ class OdometryThread {
   EventLog& events_;
   const ScanListener on_scan_;
   std::optional<Stream> stream_;  ///< Null until the sensor is known.
+  LoadGovernor governor_;
   GravityEstimate gravity_;
   std::vector<ImuSample> imu_samples_;
   Snapshot state_;  ///< The next snapshot.

@@ -32,6 +32,24 @@ void put_covariance(Json& out, Matrix6d covariance, PoseFrames frames, const Pos
   out["cov"] = std::move(cov);
 }
 
+/// The axes along or about which only the motion before told where the sensor is, in the frame of
+/// the pose, and the deviation that has grown there.
+void put_degenerate_axes(Json& out, const slam::OdometryEstimate& estimate, const Pose& T_map_odom,
+                         PoseFrames frames) {
+  Json axes = Json::array();
+  for (const slam::WeakAxis& weak : estimate.weak_axes) {
+    if (!weak.critical) continue;
+    const Eigen::Vector3d in_sensor = estimate.T_odom_sensor.rotation.conjugate() * weak.axis;
+    const Eigen::Index at = weak.rotation ? 3 : 0;
+    const double variance = in_sensor.dot(estimate.covariance.block<3, 3>(at, at) * in_sensor);
+    const Eigen::Vector3d axis = frames.map ? T_map_odom.rotation * weak.axis : weak.axis;
+    axes.push_back(Json{{"kind", weak.rotation ? "rotation" : "translation"},
+                        {"axis", vector_json(axis)},
+                        {weak.rotation ? "sigma_rad" : "sigma_m", std::sqrt(variance)}});
+  }
+  out["degenerate_axes"] = std::move(axes);
+}
+
 void put_map_correction(Json& out, const Pose& T_map_odom, std::uint32_t epoch) {
   Json pose = Json::object();
   put_pose(pose, T_map_odom);
@@ -137,6 +155,7 @@ Json newest_pose_json(const Snapshot& snapshot, PoseFrames frames, const PoseCon
   out["frame_id"] = estimate.frame_id;
   out["segment"] = estimate.segment;
   out["completeness"] = estimate.completeness;
+  put_degenerate_axes(out, estimate, snapshot.correction.T_map_odom, frames);
   return out;
 }
 

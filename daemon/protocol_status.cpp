@@ -81,6 +81,15 @@ Json stages_json(const RuntimeStatus& runtime) {
   return out;
 }
 
+Json load_json(const Snapshot& snapshot) {
+  Json shed = Json::object();
+  for (std::size_t i = 1; i < slam::kLoadLevels; ++i) {
+    shed[std::string(slam::kLoadLevelNames[i])] = snapshot.shed_scans[i];
+  }
+  const auto level = static_cast<std::size_t>(snapshot.load_level);
+  return Json{{"level", slam::kLoadLevelNames[level]}, {"shed_scans", std::move(shed)}};
+}
+
 Json queue_json(const QueueStatus& queue) {
   return Json{{"size", queue.size}, {"capacity", queue.capacity}, {"dropped", queue.dropped}};
 }
@@ -192,6 +201,7 @@ Json status_json(const RuntimeStatus& runtime, const ServiceStatus& service, std
                     {"keyframes", map.keyframe_count}};
   out["counters"] = counters_json(runtime);
   out["stage_ms"] = stages_json(runtime);
+  out["load"] = load_json(*runtime.snapshot);
   out["queues"] =
       Json{{"packets", queue_json(runtime.packets)}, {"keyframes", queue_json(runtime.keyframes)}};
   out["source"] = service.source_name;

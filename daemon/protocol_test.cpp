@@ -124,6 +124,22 @@ TEST_F(PoseJsonTest, FramesCompose) {
   EXPECT_EQ(json["child"], "base");
 }
 
+TEST_F(PoseJsonTest, OnlyAxesThatNothingHoldsAreDegenerate) {
+  EXPECT_EQ(pose(Json::object())["degenerate_axes"], Json::array());
+  slam::OdometryEstimate& estimate = *snapshot_.estimate;
+  const Eigen::Vector3d axis = estimate.T_odom_sensor.rotation * Eigen::Vector3d::UnitX();
+  estimate.covariance.setZero();
+  estimate.covariance(0, 0) = 0.25;
+  estimate.weak_axes.add({.rotation = false, .axis = axis, .critical = true});
+  estimate.weak_axes.add({.rotation = true, .axis = axis, .critical = false});
+  const Json axes = pose({{"frame", "map"}})["degenerate_axes"];
+  ASSERT_EQ(axes.size(), 1U);
+  EXPECT_EQ(axes[0]["kind"], "translation");
+  EXPECT_NEAR(axes[0]["sigma_m"].get<double>(), 0.5, 1e-9);
+  EXPECT_TRUE(
+      vector(axes[0]["axis"]).isApprox(snapshot_.correction.T_map_odom.rotation * axis, 1e-9));
+}
+
 TEST_F(PoseJsonTest, TheBaseMovesAsTheRigidBodyDoes) {
   // Finite difference of the base's pose, for a sensor moving at the estimate's velocity.
   const double dt = 1e-6;

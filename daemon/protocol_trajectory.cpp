@@ -10,7 +10,7 @@ namespace {
 /// Poses a page: some 350 bytes each, so a page stays well below the longest line.
 constexpr std::uint64_t kPagePoses = 2000;
 
-std::uint64_t parse_cursor(const Json& cursor) {
+std::uint64_t parse_pose_cursor(const Json& cursor) {
   if (cursor.is_string()) {
     const auto& text = cursor.get_ref<const std::string&>();
     std::uint64_t index = 0;
@@ -31,7 +31,7 @@ Json get_trajectory(const Json& params, const Snapshot& snapshot, const PoseCont
   std::uint64_t begin = since ? history.first_after(*since) : history.first();
   std::uint64_t skipped = 0;
   if (const Json* cursor = find_param(params, "cursor")) {
-    const std::uint64_t wanted = parse_cursor(*cursor);
+    const std::uint64_t wanted = parse_pose_cursor(*cursor);
     begin = std::clamp(wanted, history.first(), history.end());
     skipped = begin > wanted ? begin - wanted : 0;
   }

@@ -2,6 +2,7 @@
 // Copyright 2026 The Glint Authors
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -12,6 +13,7 @@
 #include "driver/core/clock_model.hpp"
 #include "driver/core/clock_source.hpp"
 #include "driver/core/scan_assembler.hpp"
+#include "slam/load_level.hpp"
 #include "slam/map.hpp"
 #include "slam/map_correction.hpp"
 #include "slam/odometry_estimate.hpp"
@@ -53,7 +55,10 @@ struct Snapshot {
   /// Came before the metadata of the sensor, or of this start of it; dropped.
   std::uint64_t early_packets = 0;
   ImuStatus imu;
-  std::uint64_t paused_scans = 0;       ///< Scans not used because of a pause.
+  std::uint64_t paused_scans = 0;                       ///< Scans not used because of a pause.
+  slam::LoadLevel load_level = slam::LoadLevel::kFull;  ///< What odometry leaves out now.
+  /// Scans of which something was left out, by what; see slam::kLoadLevelNames.
+  std::array<std::uint64_t, slam::kLoadLevels> shed_scans{};
   std::uint64_t dropped_keyframes = 0;  ///< The back end was too slow for them.
   StageStats stages;
 };

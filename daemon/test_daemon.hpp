@@ -64,6 +64,8 @@ class TestDaemon {
  public:
   explicit TestDaemon(daemon::Config config = {}, daemon::RuntimeOptions options = {}) {
     config.server.listen = "127.0.0.1:0";
+    // What a sensor sends in seconds comes at once.
+    config.slam.load_level = "none";
     auto source = std::make_unique<FakeSource>(info_.scan_period_ns() * info_.columns_per_packet /
                                                info_.columns_per_frame);
     source_ = source.get();
@@ -115,5 +117,10 @@ class TestDaemon {
   std::uint16_t port_ = 0;
   std::thread thread_;
 };
+
+/// Whether get_status says that `count` poses were published.
+inline bool has_poses(const daemon::Json& status, int count) {
+  return status["counters"]["poses"] == count;
+}
 
 }  // namespace glint::test

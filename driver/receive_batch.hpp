@@ -51,6 +51,8 @@ class ReceiveBatch {
   int receive(int socket, const std::optional<SocketAddress>& source, ReceiveCounters& counters);
 
   [[nodiscard]] bool empty() const { return next_ == received_; }
+  /// More may have waited in the socket than a batch holds.
+  [[nodiscard]] bool full() const { return received_ == kMessages; }
   /// When the oldest datagram left arrived. Requires !empty().
   [[nodiscard]] HostTime time() const { return slots_[next_].time; }
   /// Swaps the oldest datagram's bytes into `bytes`. Requires !empty().

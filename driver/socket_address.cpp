@@ -36,7 +36,7 @@ SocketAddress SocketAddress::parse(const std::string& text, const char* what) {
   }
   const auto percent = text.find('%');
   if (inet_pton(AF_INET6, text.substr(0, percent).c_str(), &address.bytes) != 1) {
-    throw InputError(
+    throw AddressError(
         fmt::format("the {} {} is no IP address; write it like 192.0.2.5, 2001:db8::5 or "
                     "fe80::5%eth0",
                     what, text));

@@ -83,6 +83,9 @@ class UdpNetwork : public testing::Test {
     if (unshare(CLONE_NEWNET) != 0) {
       GTEST_SKIP() << "making network namespaces needs root (CAP_SYS_ADMIN)";
     }
+    if (!ip("link set lo up")) {
+      GTEST_SKIP() << "setting network interfaces up needs CAP_NET_ADMIN";
+    }
     sensor_ = std::make_unique<NetworkNamespace>();
     ASSERT_EQ(unshare(CLONE_NEWNET), 0);
     host_ = std::make_unique<NetworkNamespace>();

@@ -59,13 +59,13 @@ Addresses::Addresses(const UdpSocketOptions& options) {
   if (options.multicast_group.empty()) return;
   group = SocketAddress::parse(options.multicast_group, "multicast group");
   if (!group->is_multicast()) {
-    throw InputError(
+    throw AddressError(
         fmt::format("the multicast group {} is none: groups are 224.0.0.0 to 239.255.255.255 and "
                     "those of IPv6 that begin with ff",
                     options.multicast_group));
   }
   if (bind && bind->is_ipv4() != group->is_ipv4()) {
-    throw InputError(fmt::format(
+    throw AddressError(fmt::format(
         "the bind address {} and the multicast group {} are of different families; "
         "give the interface's {} address",
         options.bind_address, options.multicast_group, group->is_ipv4() ? "IPv4" : "IPv6"));

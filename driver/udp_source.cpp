@@ -8,6 +8,7 @@
 
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <deque>
 #include <mutex>
@@ -33,7 +34,14 @@ struct Port {
 
   UdpSocket socket;
   ReceiveBatch batch;
+  HostTime complete_to;  ///< All that arrived before is in the batch or was handed out.
 };
+
+HostTime now() {
+  return {
+      duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch())
+          .count()};
+}
 
 }  // namespace
 
@@ -42,7 +50,7 @@ struct UdpSource::Impl {
 
   SourceStatus read(RawPacket& packet);
   SourceStatus wait();
-  SourceStatus receive();
+  SourceStatus receive(HostTime before);
   Port* earliest();
 
   Descriptor wake{eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)};
@@ -73,11 +81,16 @@ SourceStatus UdpSource::Impl::read(RawPacket& packet) {
   if (port == nullptr) {
     const SourceStatus waited = wait();
     if (waited != SourceStatus::kPacket) return waited;
-    const SourceStatus received = receive();
+    for (Port& waiting : ports) waiting.complete_to = {};  // The host's clock may have gone back.
+    const SourceStatus received = receive(now());
     if (received != SourceStatus::kPacket) return received;
     port = earliest();
     if (port == nullptr) return SourceStatus::kIdle;
   }
+  // What the other port had not got yet when it was read last may have come first.
+  const SourceStatus received = receive(port->batch.time());
+  if (received != SourceStatus::kPacket) return received;
+  port = earliest();
   packet.host_time = port->batch.time();
   packet.port = port->socket.port();
   port->batch.take(packet.bytes);
@@ -105,20 +118,22 @@ SourceStatus UdpSource::Impl::wait() {
   return count > 0 ? SourceStatus::kPacket : SourceStatus::kIdle;
 }
 
-// Reads a batch from each socket that has something.
-SourceStatus UdpSource::Impl::receive() {
-  std::optional<SocketAddress> only;
-  {
-    const std::lock_guard lock(mutex);
-    only = source;
-  }
-  for (std::size_t i = 0; i < ports.size(); ++i) {
-    if (polled[i].revents == 0) continue;
-    const int failure = ports[i].batch.receive(ports[i].socket.get(), only, counters);
-    if (failure == 0 || failure == EAGAIN || failure == EINTR) continue;
-    error =
-        fmt::format("reading port {} failed: {}", ports[i].socket.port(), std::strerror(failure));
-    return SourceStatus::kError;
+// Reads a batch from each socket that may hold what arrived before that time and was not read.
+SourceStatus UdpSource::Impl::receive(HostTime before) {
+  for (Port& port : ports) {
+    if (!port.batch.empty() || port.complete_to >= before) continue;
+    std::optional<SocketAddress> only;
+    {
+      const std::lock_guard lock(mutex);
+      only = source;
+    }
+    const HostTime read_at = now();
+    const int failure = port.batch.receive(port.socket.get(), only, counters);
+    if (failure != 0 && failure != EAGAIN && failure != EINTR) {
+      error = fmt::format("reading port {} failed: {}", port.socket.port(), std::strerror(failure));
+      return SourceStatus::kError;
+    }
+    port.complete_to = port.batch.full() ? HostTime{} : read_at;
   }
   return SourceStatus::kPacket;
 }

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include <atomic>
 #include <chrono>
 #include <future>
 #include <stdexcept>
@@ -98,6 +99,39 @@ TEST(UdpSource, BothPortsComeInTheOrderOfArrival) {
     EXPECT_GE(packet.host_time, last);
     last = packet.host_time;
   }
+}
+
+TEST(UdpSource, BothPortsComeInTheOrderOfArrivalWhenManyWait) {
+  UdpSourceOptions options = any_port();
+  options.imu_port = free_port();
+  UdpSource source(options);
+  const UdpSender sender;
+  for (int i = 0; i < 100; ++i) {
+    const bool imu = i % 45 == 44;
+    ASSERT_TRUE(sender.send(imu ? options.imu_port : source.lidar_port(), payload(100, i)));
+  }
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(first_byte(source), i);
+}
+
+TEST(UdpSource, BothPortsComeInTheOrderOfArrivalWhileMoreArrive) {
+  constexpr int kPackets = 5000;
+  UdpSourceOptions options = any_port();
+  options.imu_port = free_port();
+  UdpSource source(options);
+  // No more than the buffers hold may be on its way.
+  std::atomic<int> read = 0;
+  std::thread sending([&] {
+    const UdpSender sender;
+    for (int i = 0; i < kPackets; ++i) {
+      while (i - read > 50) std::this_thread::yield();
+      sender.send(i % 2 == 0 ? options.imu_port : source.lidar_port(), payload(100, i));
+    }
+  });
+  for (int i = 0; i < kPackets; ++i) {
+    EXPECT_EQ(first_byte(source), i % 256);
+    ++read;
+  }
+  sending.join();
 }
 
 TEST(UdpSource, OnePortServesLidarAndImu) {

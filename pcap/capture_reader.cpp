@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "driver/core/error.hpp"
-#include "pcap/capture_file.hpp"
+#include "pcap/classic_records.hpp"
 #include "pcap/ip_packet.hpp"
 #include "pcap/link_layer.hpp"
 
@@ -24,14 +24,20 @@ struct PcapCloser {
 };
 using PcapHandle = std::unique_ptr<pcap_t, PcapCloser>;
 
+/// Judges the file, names its link type, and reads what is not classic.
 PcapHandle open_capture(const std::filesystem::path& file) {
-  std::FILE* const stream = open_capture_file(file);
-  if (stream == nullptr) {
+  std::FILE* const stream = std::fopen(file.c_str(), "rb");
+  std::array<char, PCAP_ERRBUF_SIZE> message{};
+  // A folder opens, but cannot be read, which libpcap says of no format.
+  const int first = stream != nullptr ? std::fgetc(stream) : EOF;
+  if (stream == nullptr || std::ferror(stream) != 0) {
+    const std::string reason = std::strerror(errno);
+    if (stream != nullptr) std::fclose(stream);
     throw InputError(
         fmt::format("The capture {} cannot be read: {}; check the path and its rights.",
-                    file.string(), std::strerror(errno)));
+                    file.string(), reason));
   }
-  std::array<char, PCAP_ERRBUF_SIZE> message{};
+  std::ungetc(first, stream);
   PcapHandle capture(
       pcap_fopen_offline_with_tstamp_precision(stream, PCAP_TSTAMP_PRECISION_NANO, message.data()));
   if (capture == nullptr) {
@@ -65,19 +71,25 @@ struct CaptureReader::Impl {
       : file(std::move(path)),
         capture(open_capture(file)),
         link_type(known_link_type(file, pcap_datalink(capture.get()))),
-        link_name(link_type_name(pcap_datalink(capture.get()))) {}
+        link_name(link_type_name(pcap_datalink(capture.get()))),
+        classic(ClassicRecords::open(file)) {}
 
   /// The next record, or null at the end of the file or where it breaks off.
-  const pcap_pkthdr* read_record(Bytes& record);
+  const CaptureRecord* read_record();
+  /// The same of a file that is not classic.
+  const CaptureRecord* read_by_libpcap();
   /// What the record holds of a UDP datagram: it, or the one it completes. Empty if nothing.
   Bytes udp_of(Bytes record, HostTime time, IpPacket& packet);
   /// Counts what is no datagram. True if `datagram` was set.
-  bool take(Bytes record, HostTime time);
+  bool take(const CaptureRecord& record);
 
   const std::filesystem::path file;
   const PcapHandle capture;
   const LinkType link_type;
   const std::string link_name;
+  std::optional<ClassicRecords> classic;
+  CaptureRecord libpcap_record{};
+  std::string libpcap_fault;
   std::string problem;
   bool ended = false;
   CaptureCounters counters;
@@ -85,22 +97,33 @@ struct CaptureReader::Impl {
   Datagram datagram;
 };
 
-const pcap_pkthdr* CaptureReader::Impl::read_record(Bytes& record) {
-  if (ended) return nullptr;
+const CaptureRecord* CaptureReader::Impl::read_by_libpcap() {
   pcap_pkthdr* header = nullptr;
   const u_char* data = nullptr;
   const int status = pcap_next_ex(capture.get(), &header, &data);
   if (status == 1) {
+    // With nanosecond precision tv_usec holds nanoseconds.
+    libpcap_record = {{header->ts.tv_sec * kNsPerSecond + header->ts.tv_usec},
+                      {data, header->caplen}};
+    return &libpcap_record;
+  }
+  if (status != PCAP_ERROR_BREAK) libpcap_fault = pcap_geterr(capture.get());
+  return nullptr;
+}
+
+const CaptureRecord* CaptureReader::Impl::read_record() {
+  if (ended) return nullptr;
+  if (const CaptureRecord* const record = classic ? classic->next() : read_by_libpcap()) {
     ++counters.records;
-    record = {data, header->caplen};
-    return header;
+    return record;
   }
   ended = true;
   reassembler.finish();
-  if (status != PCAP_ERROR_BREAK) {
+  const std::string& fault = classic ? classic->fault() : libpcap_fault;
+  if (!fault.empty()) {
     problem =
         fmt::format("The capture {} breaks off after {} records ({}); what came before is used.",
-                    file.string(), counters.records, pcap_geterr(capture.get()));
+                    file.string(), counters.records, fault);
   }
   return nullptr;
 }
@@ -126,9 +149,9 @@ Bytes CaptureReader::Impl::udp_of(Bytes record, HostTime time, IpPacket& packet)
   return {};
 }
 
-bool CaptureReader::Impl::take(Bytes record, HostTime time) {
+bool CaptureReader::Impl::take(const CaptureRecord& record) {
   IpPacket packet;
-  const Bytes bytes = udp_of(record, time, packet);
+  const Bytes bytes = udp_of(record.bytes, record.time, packet);
   if (bytes.data() == nullptr) return false;
   UdpDatagram udp;
   const ParseStatus status = parse_udp(bytes, udp);
@@ -138,7 +161,7 @@ bool CaptureReader::Impl::take(Bytes record, HostTime time) {
     ++(status == ParseStatus::kTruncated ? counters.truncated_records : counters.malformed_records);
     return false;
   }
-  datagram = {time,
+  datagram = {record.time,
               {packet.source, udp.source_port},
               {packet.destination, udp.destination_port},
               std::as_bytes(udp.payload)};
@@ -150,11 +173,8 @@ CaptureReader::CaptureReader(std::filesystem::path file)
 CaptureReader::~CaptureReader() = default;
 
 const Datagram* CaptureReader::next() {
-  Bytes record;
-  while (const pcap_pkthdr* header = impl_->read_record(record)) {
-    // With nanosecond precision tv_usec holds nanoseconds.
-    const HostTime time{header->ts.tv_sec * kNsPerSecond + header->ts.tv_usec};
-    if (impl_->take(record, time)) return &impl_->datagram;
+  while (const CaptureRecord* const record = impl_->read_record()) {
+    if (impl_->take(*record)) return &impl_->datagram;
   }
   return nullptr;
 }

@@ -13,15 +13,14 @@
 
 #include "driver/core/error.hpp"
 #include "pcap/internet_checksum.hpp"
+#include "pcap/ip_packet.hpp"
 
 namespace glint {
 namespace {
 
 constexpr int kMinMtu = 576;
-constexpr std::uint8_t kProtocolUdp = 17;
 constexpr std::uint8_t kNextHeaderFragment = 44;
 constexpr std::uint8_t kHopLimit = 64;
-constexpr std::size_t kUdpHeaderBytes = 8;
 
 /// Appends integers to a byte buffer: file fields little-endian, network fields big-endian.
 class Appender {

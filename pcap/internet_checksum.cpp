@@ -2,10 +2,10 @@
 // Copyright 2026 The Glint Authors
 #include "pcap/internet_checksum.hpp"
 
+#include "pcap/ip_packet.hpp"
+
 namespace glint {
 namespace {
-
-constexpr std::uint64_t kProtocolUdp = 17;
 
 std::uint64_t word_sum(Bytes data) {
   std::uint64_t sum = 0;

@@ -44,6 +44,7 @@ Backend::Backend(const SlamConfig& config, const std::filesystem::path& session_
     : config_(config),
       clock_(clock),
       loops_(config.loops ? std::move(loops) : LoopSource{}),
+      graph_({config.pgo_gravity, config.loop_consistency}),
       store_(session_file.empty() ? nullptr : std::make_unique<SessionStore>(session_file, config)),
       snapshot_(std::make_shared<const MapSnapshot>()) {}
 
@@ -68,12 +69,13 @@ void Backend::process(const Keyframe& keyframe) {
         config_.map_voxel_m > 0 ? config_.map_voxel_m : voxel_from_median_range_m(keyframe);
     map_.emplace(voxel_m, static_cast<std::size_t>(config_.map_max_points));
   }
-  map_->insert(T_map_sensor, keyframe.points);
+  map_->insert(T_map_sensor, config_.moving_objects ? moving_.standing(keyframe) : keyframe.points);
   if (store_ && !store_->add(keyframe, T_map_sensor)) {
     ++store_failures_;
     not_stored_.insert(keyframe.id);
   }
   if (loops_) look_for_loops(keyframe);
+  if (graph_.tilted()) settle();
   store_changes();
   publish();
 }
@@ -83,13 +85,17 @@ void Backend::finish() {
   const StageTimer timer(clock_, times_, Stage::kBackend);
   loop_reports_.clear();
   if (!loops_waiting_) return;
-  {
-    const StageTimer pgo(clock_, times_, Stage::kPgo);
-    for (const LoopEdge& edge : optimize()) report_refused(edge, "other loops contradict it");
-  }
-  loops_rejected_ += loop_reports_.size();
+  settle();
   store_changes();
   publish();
+}
+
+// A correction that no new loop asks for.
+void Backend::settle() {
+  for (const LoopEdge& edge : optimize()) {
+    report_refused(edge, "other loops contradict it");
+    ++loops_rejected_;
+  }
 }
 
 void Backend::look_for_loops(const Keyframe& keyframe) {
@@ -97,50 +103,69 @@ void Backend::look_for_loops(const Keyframe& keyframe) {
   for (LoopCandidate& candidate : found.candidates) {
     loop_reports_.push_back({stamp_, std::move(candidate), {}, {}, {}});
   }
-  if (found.edge) {
-    const LoopEdge& edge = *found.edge;
-    const auto is_of_edge = [&](const LoopReport& r) { return r.candidate.from == edge.from; };
-    const auto known = std::ranges::find_if(loop_reports_, is_of_edge);
-    const auto slot = static_cast<std::size_t>(known - loop_reports_.begin());
-    if (known == loop_reports_.end()) loop_reports_.emplace_back().stamp = stamp_;
-    // Further reports may join it meanwhile.
-    LoopReport report = std::move(loop_reports_[slot]);
-    report.candidate.from = edge.from;
-    report.candidate.to = edge.to;
-    report.candidate.accepted = true;
-    take_loop(edge, report);
-    loop_reports_[slot] = std::move(report);
-  }
+  take_loops(found.edges);
   loops_rejected_ += static_cast<std::uint64_t>(std::ranges::count_if(
       loop_reports_, [](const LoopReport& report) { return !report.candidate.accepted; }));
 }
 
-// The graph's word on an edge that appearance and geometry speak for.
-void Backend::take_loop(const LoopEdge& edge, LoopReport& report) {
-  const StageTimer timer(clock_, times_, Stage::kPgo);
-  report.before = graph_.misfit(edge);
-  report.after = report.before;
-  if (!report.before) {
-    report.candidate.accepted = false;
-    report.candidate.reason = "its keyframes or its covariance are none of the graph's";
-    return;
-  }
-  const bool fits = graph_.joined(edge) && report.before->chi_squared <= kFitting;
-  graph_.add_loop(edge);
-  changes_.added.push_back(edge);
-  loops_waiting_ = true;
-  if (fits) return;
-  for (const LoopEdge& refused : optimize()) {
-    if (same_pair(refused, edge)) {
+// The graph's word on edges that appearance and geometry speak for.
+void Backend::take_loops(std::span<const LoopEdge> edges) {
+  bool surprising = false;
+  for (const LoopEdge& edge : edges) {
+    LoopReport& report = report_of(edge);
+    report.candidate.accepted = true;
+    report.before = report.after = graph_.misfit(edge);
+    if (!report.before) {
       report.candidate.accepted = false;
-      report.candidate.reason = "other loops contradict it";
-      changes_.added.pop_back();
-    } else {
-      report_refused(refused, "loops found later contradict it");
+      report.candidate.reason = "its keyframes or its covariance are none of the graph's";
+      continue;
     }
+    surprising |= !graph_.joined(edge) || report.before->chi_squared > kFitting;
+    graph_.add_loop(edge);
+    changes_.added.push_back(edge);
+    loops_waiting_ = true;
   }
+  if (!surprising) return;
+  for (const LoopEdge& refused : optimize()) {
+    const auto is_it = [&](const LoopEdge& edge) { return same_pair(edge, refused); };
+    if (std::ranges::none_of(edges, is_it)) {
+      report_refused(refused, "loops found later contradict it");
+      continue;
+    }
+    LoopReport& report = report_of(refused);
+    report.candidate.accepted = false;
+    report.candidate.reason = "other loops contradict it";
+    std::erase_if(changes_.added, is_it);
+  }
+  for (const LoopEdge& edge : edges) {
+    LoopReport& report = report_of(edge);
+    report.after = graph_.misfit(edge);
+    report.correction = last_correction_;
+  }
+}
+
+// What stood against it is gone.
+void Backend::report_restored(const LoopEdge& edge) {
+  LoopReport& report = report_of(edge);
+  report.candidate.accepted = true;
+  report.candidate.reason.clear();
   report.after = graph_.misfit(edge);
   report.correction = last_correction_;
+  changes_.added.push_back(edge);
+}
+
+// That of its candidate, or a new one. Valid until the next.
+LoopReport& Backend::report_of(const LoopEdge& edge) {
+  const auto is_of_edge = [&](const LoopReport& report) {
+    return report.candidate.from == edge.from && report.candidate.to == edge.to;
+  };
+  const auto known = std::ranges::find_if(loop_reports_, is_of_edge);
+  if (known != loop_reports_.end()) return *known;
+  LoopReport& report = loop_reports_.emplace_back();
+  report.stamp = stamp_;
+  report.candidate.from = edge.from;
+  report.candidate.to = edge.to;
+  return report;
 }
 
 void Backend::report_refused(const LoopEdge& edge, const char* reason) {
@@ -156,10 +181,15 @@ void Backend::report_refused(const LoopEdge& edge, const char* reason) {
 // Returns the edges that did not fit and are gone.
 std::vector<LoopEdge> Backend::optimize() {
   const std::vector<Pose> before(graph_.poses().begin(), graph_.poses().end());
-  std::vector<LoopEdge> refused = graph_.optimize();
+  std::vector<LoopEdge> refused;
+  {
+    const StageTimer pgo(clock_, times_, Stage::kPgo);
+    refused = graph_.optimize();
+  }
   loops_waiting_ = false;
   last_correction_ = largest_of(before, graph_.poses());
   if (last_correction_.distance_m > 0.0 || last_correction_.angle_rad > 0.0) correct(before);
+  for (const LoopEdge& edge : graph_.restored()) report_restored(edge);
   return refused;
 }
 

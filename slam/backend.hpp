@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -17,6 +18,7 @@
 #include "slam/loop_source.hpp"
 #include "slam/map.hpp"
 #include "slam/map_correction.hpp"
+#include "slam/moving_points.hpp"
 #include "slam/pose_graph.hpp"
 #include "slam/session_store.hpp"
 #include "slam/stage_times.hpp"
@@ -56,8 +58,11 @@ class Backend {
 
  private:
   void look_for_loops(const Keyframe& keyframe);
-  void take_loop(const LoopEdge& edge, LoopReport& report);
+  void settle();
+  void take_loops(std::span<const LoopEdge> edges);
+  LoopReport& report_of(const LoopEdge& edge);
   std::vector<LoopEdge> optimize();
+  void report_restored(const LoopEdge& edge);
   void report_refused(const LoopEdge& edge, const char* reason);
   void correct(const std::vector<Pose>& before);
   void store_changes();
@@ -67,6 +72,7 @@ class Backend {
   const Clock clock_;
   const LoopSource loops_;
   PoseGraph graph_;
+  MovingPoints moving_;
   std::optional<VoxelMap> map_;  ///< Made with the first keyframe, whose ranges set the voxels.
   std::unique_ptr<SessionStore> store_;
   MapCorrection correction_;

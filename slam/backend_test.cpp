@@ -51,7 +51,7 @@ LoopSource known_loops(std::map<std::uint64_t, LoopEdge> edges) {
     LoopSearch found;
     found.candidates.push_back({k.id > 5 ? k.id - 5 : 0, k.id, false, "too near", 0.4});
     if (const auto edge = edges.find(k.id); edge != edges.end()) {
-      found.edge = edge->second;
+      found.edges.push_back(edge->second);
       found.candidates.push_back({edge->second.from, k.id, true, "", 0.9, 80, 60, 0.7, 0.02});
     }
     return found;
@@ -154,6 +154,30 @@ TEST(Backend, EveryCandidateIsReportedWithItsFigures) {
   EXPECT_LT(error_m(backend.correction(), kRound + 4), error_m(before, kRound + 4) + 0.01);
 }
 
+TEST(Backend, LoopsThatComeTogetherAreOneCorrectionAndAWrongOneAmongThemGoes) {
+  LoopEdge wrong = true_loop(1, kRound + 1);
+  wrong.T_from_to.translation_m.x() += 5.0;
+  const auto all_at_once = [&](const Keyframe& k) {
+    LoopSearch found;
+    if (k.id != kRound + 4) return found;
+    found.edges = {true_loop(4, kRound + 4), wrong, true_loop(2, kRound + 2),
+                   true_loop(3, kRound + 3)};
+    return found;
+  };
+  Backend backend({}, {}, {}, all_at_once);
+  for (std::uint64_t k = 0; k <= kRound + 4; ++k) backend.process(keyframe(k));
+  EXPECT_EQ(backend.correction().epoch, 1U);
+  EXPECT_EQ(backend.loops_accepted(), 3U);
+  EXPECT_EQ(backend.loops_rejected(), 1U);
+  ASSERT_EQ(backend.loop_reports().size(), 4U);
+  for (const LoopReport& report : backend.loop_reports()) {
+    EXPECT_EQ(report.candidate.accepted, report.candidate.from != 1);
+    EXPECT_EQ(report.candidate.to, kRound + report.candidate.from);
+  }
+  EXPECT_EQ(backend.loop_reports()[1].candidate.reason, "other loops contradict it");
+  EXPECT_LT(error_m(backend.correction(), kRound + 4), 0.05);
+}
+
 TEST(Backend, LoopsThatFitMoveThePosesAtTheEndOnly) {
   std::map<std::uint64_t, LoopEdge> edges;
   for (const std::uint64_t k : {0, 1, 2, 3, 4}) edges[kRound + k] = true_loop(k, kRound + k);
@@ -202,6 +226,34 @@ TEST(Backend, ASegmentWithoutALoopGoesOnFromTheHeldPoseAndJumpsWithIts) {
   const Pose here = correction.map_pose(1, 5.0 * (kRound + 30), T_odom_sensor);
   const Pose seen = keyframe(30).estimate.T_odom_sensor;
   EXPECT_LT((here.translation_m - seen.translation_m).norm(), 1e-6);
+}
+
+/// What an earlier corridor of the same make would have the keyframe see: 3 m off.
+LoopEdge false_loop(std::uint64_t from, std::uint64_t to) {
+  const Pose off{Eigen::Quaterniond::Identity(), {3.0, 0.0, 0.0}};
+  return {from, to, true_pose(from).inverse() * (off * true_pose(to)),
+          Eigen::Matrix<double, 6, 6>::Identity() * 1e-4};
+}
+
+TEST(Backend, LoopsThatFalseOnesKeptOutComeBackAndAreTold) {
+  std::map<std::uint64_t, LoopEdge> edges;
+  for (std::uint64_t k = 0; k < 3; ++k) edges[kRound + k] = false_loop(k, kRound + k);
+  for (std::uint64_t k = 3; k < 9; ++k) edges[kRound + k] = true_loop(k, kRound + k);
+  Backend backend({}, {}, {}, known_loops(edges));
+  std::map<std::uint64_t, int> accepted;
+  std::map<std::uint64_t, int> refused;
+  for (std::uint64_t k = 0; k <= kRound + 10; ++k) {
+    backend.process(keyframe(k));
+    for (const LoopReport& report : backend.loop_reports()) {
+      if (report.candidate.to - report.candidate.from != kRound) continue;
+      ++(report.candidate.accepted ? accepted : refused)[report.candidate.from];
+    }
+  }
+  EXPECT_EQ(backend.loops_accepted(), 6U);
+  EXPECT_EQ(refused[0], 1) << "it was accepted, and then taken out";
+  EXPECT_EQ(refused[3], 1) << "at first it stood alone";
+  EXPECT_EQ(accepted[3], 1);
+  EXPECT_LT(error_m(backend.correction(), kRound + 10), 0.1);
 }
 
 class BackendSession : public testing::Test {

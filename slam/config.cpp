@@ -13,8 +13,16 @@ SlamConfig preset_config(const std::string& name) {
   if (name == "full") return config;
   if (name == "paper") {
     config.preset = "paper";
-    config.deskew = false;
+    config.deskew = config.gyro = config.accelerometer = config.motion_prior = config.degeneracy =
+        false;
+    config.image_filter = config.ba_by_noise = config.moving_objects = false;
+    config.pgo_gravity = config.loop_consistency = false;
     config.orb_upright = false;
+    config.loop_density = false;
+    config.local_map_reach_m = 0.0;
+    config.plane_map = "tree";
+    config.plane_points = 1200;
+    config.ba_weight = 1.0;
     config.plane_neighbours = 3;
     return config;
   }

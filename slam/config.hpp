@@ -22,7 +22,19 @@ struct SlamConfig {
   /// Points are brought to the scan's end by the motion of the last scan. Off: the scan is taken as
   /// rigid, its pose is that of its middle and is extrapolated to its end.
   bool deskew = true;
+  /// The gyroscope tells how the sensor turned, where there is one.
+  bool gyro = true;
+  /// The accelerometer tells how its velocity changed; only with the gyroscope.
+  bool accelerometer = true;
+  /// The motion so far takes part in where a scan is placed, as sure as it has foretold scans
+  /// before.
+  bool motion_prior = true;
+  /// Along axes that surfaces leave open they are not asked: keypoints and the motion so far tell.
+  bool degeneracy = true;
 
+  /// Keypoints are looked for in an image without the beams' differences and with even brightness
+  /// (see image_filter.hpp). Off: in the intensity as measured.
+  bool image_filter = true;
   /// ORB: most keypoints, pyramid levels, scale between levels, FAST threshold. Two levels: on 64
   /// rows the descriptor's 31-pixel patch fits no further one, and coarse keypoints blur the
   /// motion.
@@ -60,22 +72,44 @@ struct SlamConfig {
   bool ba = true;
   /// Places seen again are recognised and correct the map.
   bool loops = true;
+  /// They are recognised by the shape of what stands around them too, where the intensity image
+  /// tells nothing: few beams, bare walls.
+  bool loop_density = true;
+  /// The map is kept level by what the accelerometer feels, where there is one.
+  bool pgo_gravity = true;
+  /// Of loops that contradict one another the largest set that agrees is kept. Off: those that fit
+  /// worst are taken out one by one.
+  bool loop_consistency = true;
   /// Height of the sensor above the ground, m; 0 (auto): that of the dominant low plane.
   double sensor_height_m = 0.0;
   /// Weight of the ground's residuals to those of other surfaces.
   double ground_weight = 2.0;
+  /// What surfaces are kept as: "voxels", planes that average all points (VoxelPlaneMap), or
+  /// "tree", thinned points in a k-d tree (RecentMap) with the settings below.
+  std::string plane_map = "voxels";
   /// About so many points on surfaces are taken from a scan.
-  int plane_points = 1200;
+  int plane_points = 2000;
   /// Nearest map points that give a plane: 3 span it, more are fitted.
   int plane_neighbours = 5;
   /// The local map keeps a point in cubes of this edge (m), within this distance (m) of the sensor.
   double local_map_voxel_m = 0.4;
   double local_map_radius_m = 100.0;
+  /// What was left behind by this distance (m) and more is forgotten, see RecentMap; 0: it is not.
+  double local_map_reach_m = 50.0;
+  /// What moves is left out: of the map what comes where keyframes before saw through
+  /// (MovingPoints), of the keypoints those that ride along (riding_along.hpp).
+  bool moving_objects = true;
   /// Last scans whose keypoints are compared, and the weight of these residuals.
   int ba_frames = 10;
-  double ba_weight = 1.0;
+  double ba_weight = 0.3;
+  /// Keypoints weigh what their residuals show them to be good to.
+  bool ba_by_noise = true;
   /// Most times that associations are made anew for a scan.
   int map_rounds = 4;
+
+  /// What is left out so that the machine keeps up: a name of kLoadLevelNames, or "auto" for as
+  /// much as a live stream needs, and nothing in a replay.
+  std::string load_level = "auto";
 
   /// A keyframe is made after this distance (m), angle (rad), or when fewer matches remain.
   double keyframe_distance_m = 0.5;

@@ -45,33 +45,48 @@ struct FeatureExtractor::Impl {
   cv::Mat descriptors;
 };
 
+void Features::clear() {
+  keypoints.clear();
+  descriptors.clear();
+  raw_points_m.clear();
+  columns.clear();
+  points_m.clear();
+}
+
+void Features::deskew(std::span<const Pose> T_reference_column) {
+  for (std::size_t i = 0; i < points_m.size(); ++i) {
+    points_m[i] = T_reference_column[static_cast<std::size_t>(columns[i])] * raw_points_m[i];
+  }
+}
+
 FeatureExtractor::FeatureExtractor(const SensorInfo& info, const SlamConfig& config,
                                    std::shared_ptr<const XyzLut> lut)
     : impl_(std::make_unique<Impl>(info, config, std::move(lut))) {}
 
 FeatureExtractor::~FeatureExtractor() = default;
 
-void FeatureExtractor::extract(const LidarScan& scan, const ScanImages& images,
-                               Features& features) {
+void FeatureExtractor::set_most(int keypoints) { impl_->orb->setMaxFeatures(keypoints); }
+
+void FeatureExtractor::extract(const ScanImages& images, Features& features) {
   Impl& my = *impl_;
-  const int rows = images.intensity_u8.rows;
-  const int cols = images.intensity_u8.cols;
+  const int rows = images.brightness.rows;
+  const int cols = images.brightness.cols;
   // OpenCV has no view of constant data; the image is only read.
-  cv::Mat image(rows, cols, CV_8UC1, const_cast<std::uint8_t*>(images.intensity_u8.data.data()));
+  cv::Mat image(rows, cols, CV_8UC1, const_cast<std::uint8_t*>(images.brightness.data.data()));
   if (my.row_factor > 1) {
     cv::resize(image, my.enlarged, {cols, rows * my.row_factor}, 0, 0, cv::INTER_LINEAR);
     image = my.enlarged;
   }
-  my.orb->detect(image, my.keypoints);
   if (my.upright) {
+    my.orb->detect(image, my.keypoints);
     for (cv::KeyPoint& keypoint : my.keypoints) keypoint.angle = 0.0F;
+    my.orb->compute(image, my.keypoints, my.descriptors);
+  } else {
+    // At one go the pyramid is made once.
+    my.orb->detectAndCompute(image, cv::noArray(), my.keypoints, my.descriptors);
   }
-  my.orb->compute(image, my.keypoints, my.descriptors);
 
-  features.keypoints.clear();
-  features.descriptors.clear();
-  features.raw_points_m.clear();
-  features.times.clear();
+  features.clear();
   for (std::size_t i = 0; i < my.keypoints.size(); ++i) {
     const cv::KeyPoint& keypoint = my.keypoints[i];
     const auto factor = static_cast<float>(my.row_factor);
@@ -89,7 +104,7 @@ void FeatureExtractor::extract(const LidarScan& scan, const ScanImages& images,
     std::memcpy(descriptor.data(), my.descriptors.ptr(static_cast<int>(i)), sizeof descriptor);
     features.descriptors.push_back(descriptor);
     features.raw_points_m.push_back(my.lut->point(row, m, range_mm));
-    features.times.push_back(scan.column_time[static_cast<std::size_t>(m)]);
+    features.columns.push_back(m);
   }
   features.points_m = features.raw_points_m;
 }

@@ -6,9 +6,10 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
-#include "driver/core/lidar_scan.hpp"
+#include "driver/core/pose.hpp"
 #include "driver/core/sensor_info.hpp"
 #include "driver/core/xyz_lut.hpp"
 #include "slam/config.hpp"
@@ -33,11 +34,14 @@ struct Features {
   std::vector<Descriptor> descriptors;
   /// Sensor frame at the time the pixel was measured, m.
   std::vector<Eigen::Vector3d> raw_points_m;
-  std::vector<SensorTime> times;  ///< When each pixel was measured.
-  /// Sensor frame at the scan's reference time, m (see deskew.hpp); what is registered.
+  std::vector<int> columns;  ///< Measurement column of each pixel.
+  /// Sensor frame at the scan's reference time, m; what is registered.
   std::vector<Eigen::Vector3d> points_m;
 
   [[nodiscard]] std::size_t size() const { return keypoints.size(); }
+  void clear();
+  /// Brings the points, each measured in its own column, to the scan's reference time.
+  void deskew(std::span<const Pose> T_reference_column);
 };
 
 /// ORB on the intensity image, and the 3-D point of each keypoint from the same pixel
@@ -51,8 +55,10 @@ class FeatureExtractor {
   FeatureExtractor(const FeatureExtractor&) = delete;
   FeatureExtractor& operator=(const FeatureExtractor&) = delete;
 
+  /// From the next image on at most so many keypoints are taken.
+  void set_most(int keypoints);
   /// Fills everything but `points_m`, which is set to `raw_points_m`.
-  void extract(const LidarScan& scan, const ScanImages& images, Features& features);
+  void extract(const ScanImages& images, Features& features);
 
  private:
   struct Impl;

@@ -6,11 +6,13 @@
 #include <optional>
 
 #include "driver/core/clock.hpp"
+#include "driver/core/imu_packet.hpp"
 #include "driver/core/lidar_scan.hpp"
 #include "driver/core/pose.hpp"
 #include "driver/core/sensor_info.hpp"
 #include "slam/config.hpp"
 #include "slam/keyframe.hpp"
+#include "slam/load_level.hpp"
 #include "slam/odometry_estimate.hpp"
 #include "slam/scan_images.hpp"
 #include "slam/stage_times.hpp"
@@ -30,6 +32,11 @@ class Frontend {
   Frontend(const Frontend&) = delete;
   Frontend& operator=(const Frontend&) = delete;
 
+  /// A measurement of the sensor's IMU, in the order of their times; those up to a scan's end
+  /// before the scan. Without any, the motion so far foretells the next one.
+  void add_imu(const ImuSample& sample);
+  /// What is left out from the next scan on. Results depend on it, so that a replay never sets it.
+  void set_load_level(LoadLevel level);
   /// The pose of one scan. Valid until the next call. Never throws on any scan of this sensor.
   const OdometryEstimate& process(const LidarScan& scan);
   /// The keyframe that the last scan gave, if any; a second call gives none.

@@ -74,6 +74,75 @@ TEST_P(FrontendPresets, FollowsTheTruth) {
   }
 }
 
+// What an IMU without errors measures on the walk, 100 times a second.
+std::vector<ImuSample> measure(const synth::Simulator& simulator, SensorTime from, SensorTime to) {
+  constexpr std::int64_t kStep_ns = 10'000'000;
+  constexpr double kStep_s = 0.01;
+  const Eigen::Vector3d gravity_mps2(0.0, 0.0, -9.80665);
+  std::vector<ImuSample> samples;
+  for (SensorTime t = from; t <= to; t = t + kStep_ns) {
+    const Pose before = simulator.true_pose(t + -kStep_ns);
+    const Pose at = simulator.true_pose(t);
+    const Pose after = simulator.true_pose(t + kStep_ns);
+    const Eigen::Vector3d acceleration_mps2 =
+        (after.translation_m - 2.0 * at.translation_m + before.translation_m) / (kStep_s * kStep_s);
+    ImuSample sample;
+    sample.accel_time = sample.gyro_time = t;
+    sample.angular_rate_radps =
+        so3_log(before.rotation.conjugate() * after.rotation) / (2.0 * kStep_s);
+    sample.acceleration_mps2 = at.rotation.conjugate() * (acceleration_mps2 - gravity_mps2);
+    samples.push_back(sample);
+  }
+  return samples;
+}
+
+TEST_F(FrontendTest, AnImuMakesPosesBetterWheneverItsMeasurementsCome) {
+  const auto samples =
+      measure(*simulator_, scans_->front().column_time.front(), scans_->back().end_time);
+  Frontend without(simulator_->info(), {});
+  Frontend all_at_once(simulator_->info(), {});
+  Frontend as_they_come(simulator_->info(), {});
+  for (const ImuSample& sample : samples) all_at_once.add_imu(sample);
+  double squares_without_m2 = 0.0;
+  double squares_with_m2 = 0.0;
+  std::size_t next = 0;
+  for (const LidarScan& scan : *scans_) {
+    for (; next < samples.size() && samples[next].gyro_time <= scan.end_time; ++next) {
+      as_they_come.add_imu(samples[next]);
+    }
+    const double without_m = way_error_m({}, scans_->front(), without.process(scan));
+    const OdometryEstimate& with = as_they_come.process(scan);
+    const double with_m = way_error_m({}, scans_->front(), with);
+    squares_without_m2 += without_m * without_m;
+    squares_with_m2 += with_m * with_m;
+    EXPECT_EQ(all_at_once.process(scan).T_odom_sensor.translation_m,
+              with.T_odom_sensor.translation_m);
+  }
+  EXPECT_LT(squares_with_m2, 0.5 * squares_without_m2);
+}
+
+class FrontendUnderLoad : public FrontendTest, public testing::WithParamInterface<const char*> {};
+
+TEST_P(FrontendUnderLoad, TrackingGoesOnWithLess) {
+  SlamConfig config;
+  config.load_level = GetParam();
+  Frontend frontend(simulator_->info(), config);
+  const bool sparing = load_level_of(GetParam()) == LoadLevel::kKeypointsEverySecond;
+  int without_keypoints = 0;
+  for (std::size_t i = 0; i < scans_->size(); ++i) {
+    const OdometryEstimate& estimate = frontend.process((*scans_)[i]);
+    EXPECT_EQ(estimate.state, i == 0 ? TrackingState::kInit : TrackingState::kTracking) << i;
+    EXPECT_LE(estimate.keypoints, config.orb_features / 2 + 50) << i;
+    if (estimate.keypoints == 0) ++without_keypoints;
+    EXPECT_LT(way_error_m({}, scans_->front(), estimate), 0.15) << i;
+  }
+  const int scans = static_cast<int>(scans_->size());
+  EXPECT_EQ(without_keypoints, sparing ? scans / 2 : 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Levels, FrontendUnderLoad,
+                         testing::Values("keypoints", "surface_points", "keypoints_every_second"));
+
 INSTANTIATE_TEST_SUITE_P(Presets, FrontendPresets, testing::Values("paper", "full"));
 
 // What each element of map optimisation adds is measured on long ways, see DESIGN.md.

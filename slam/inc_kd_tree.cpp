@@ -42,9 +42,9 @@ bool IncKdTree::insert_downsampled(const Eigen::Vector3f& point) {
   // The box is a little too large, for rounding must not lose what lies on the cube's border.
   std::erase_if(in_cube_,
                 [&](const auto& other) { return cube_of(other, options_.voxel_m) != cube; });
-  const float distance = (point - middle).squaredNorm();
+  const float distance_m = (point - middle).norm();
   for (const Eigen::Vector3f& other : in_cube_) {
-    if ((other - middle).squaredNorm() <= distance) return false;
+    if ((other - middle).norm() <= distance_m + options_.margin_m) return false;
   }
   for (const Eigen::Vector3f& other : in_cube_) {
     erase_point_below(root_, other);
@@ -214,6 +214,20 @@ bool IncKdTree::lies_below(Index i, Index root) const {
 
 // ---- search ---------------------------------------------------------------------------------
 
+void Neighbours::offer(const Eigen::Vector3f& point_m, float squared_distance_m2, int k,
+                       float& limit_m2) {
+  if (squared_distance_m2 > limit_m2 || k <= 0) return;
+  int place = std::min(count, k - 1);
+  if (count < k) ++count;
+  for (; place > 0; --place) {
+    const auto before = static_cast<std::size_t>(place - 1);
+    if (items[before].squared_distance_m2 <= squared_distance_m2) break;
+    items[before + 1] = items[before];
+  }
+  items[static_cast<std::size_t>(place)] = {point_m, squared_distance_m2};
+  if (count == k) limit_m2 = items[static_cast<std::size_t>(k - 1)].squared_distance_m2;
+}
+
 Neighbours IncKdTree::nearest(const Eigen::Vector3f& query, int k, float max_distance_m) const {
   Neighbours found;
   float limit = max_distance_m * max_distance_m;
@@ -221,43 +235,19 @@ Neighbours IncKdTree::nearest(const Eigen::Vector3f& query, int k, float max_dis
   return found;
 }
 
-namespace {
-
-// Puts a point in its place among the `k` nearest; `limit` is what the next one must beat.
-void offer(const Eigen::Vector3f& point, float distance, int k, float& limit, Neighbours& found) {
-  if (distance > limit || k <= 0) return;
-  int place = std::min(found.count, k - 1);
-  if (found.count < k) ++found.count;
-  auto& items = found.items;
-  for (; place > 0; --place) {
-    const auto before = static_cast<std::size_t>(place - 1);
-    if (items[before].squared_distance_m2 <= distance) break;
-    items[before + 1] = items[before];
-  }
-  items[static_cast<std::size_t>(place)] = {point, distance};
-  if (found.count == k) limit = found[k - 1].squared_distance_m2;
-}
-
-}  // namespace
-
 void IncKdTree::search(Index i, const Eigen::Vector3f& query, int k, float& limit,
                        Neighbours& found) const {
   const Node& node = at(i);
   if (node.deleted_count == node.size) return;
-  if (!node.deleted) offer(node.point, (node.point - query).squaredNorm(), k, limit, found);
-  const auto away = [&](Index child) {
-    return child == kNone ? std::numeric_limits<float>::infinity()
-                          : at(child).box.squared_distance(query);
-  };
-  const float left = away(node.left);
-  const float right = away(node.right);
-  const bool left_first = left <= right;
-  if (std::min(left, right) <= limit) {
-    search(left_first ? node.left : node.right, query, k, limit, found);
-  }
-  if (std::max(left, right) <= limit) {
-    search(left_first ? node.right : node.left, query, k, limit, found);
-  }
+  // Half of the nodes are leaves, whose box is their point.
+  if (node.size > 1 && node.box.squared_distance(query) > limit) return;
+  if (!node.deleted) found.offer(node.point, (node.point - query).squaredNorm(), k, limit);
+  // The side is judged before the child is looked at: most of the time goes into fetching nodes.
+  const float beyond = query[node.axis] - node.point[node.axis];
+  const Index near = beyond < 0 ? node.left : node.right;
+  const Index far = beyond < 0 ? node.right : node.left;
+  if (near != kNone) search(near, query, k, limit, found);
+  if (far != kNone && beyond * beyond <= limit) search(far, query, k, limit, found);
 }
 
 void IncKdTree::collect(const Box& box, std::vector<Eigen::Vector3f>& out) const {
@@ -268,8 +258,9 @@ void IncKdTree::collect_below(Index i, const Box& box, std::vector<Eigen::Vector
   const Node& node = at(i);
   if (node.deleted_count == node.size || !box.touches(node.box)) return;
   if (!node.deleted && box.contains(node.point)) out.push_back(node.point);
-  if (node.left != kNone) collect_below(node.left, box, out);
-  if (node.right != kNone) collect_below(node.right, box, out);
+  const float split = node.point[node.axis];
+  if (node.left != kNone && box.min_m[node.axis] <= split) collect_below(node.left, box, out);
+  if (node.right != kNone && box.max_m[node.axis] >= split) collect_below(node.right, box, out);
 }
 
 std::size_t IncKdTree::size() const {

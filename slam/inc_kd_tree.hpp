@@ -28,11 +28,18 @@ struct Neighbours {
   [[nodiscard]] const Neighbour& operator[](int i) const {
     return items[static_cast<std::size_t>(i)];
   }
+  /// Puts a point in its place among the `k` nearest; farther ones than `limit_m2` are left out,
+  /// which becomes the distance of the last of the k once there are as many.
+  void offer(const Eigen::Vector3f& point_m, float squared_distance_m2, int k, float& limit_m2);
 };
 
 struct KdTreeOptions {
   /// Edge of the cubes of which each keeps one point, that nearest to its middle, m.
   float voxel_m = 0.2F;
+  /// By how much nearer a point must be to take the place of what the cube holds. Beyond the noise:
+  /// of points measured again and again the nearest would else be the one with the luckiest noise,
+  /// and surfaces would be drawn towards the middles of their cubes.
+  float margin_m = 0.05F;
   /// A subtree is rebuilt when one side has more than this share of its nodes,
   double balance = 0.6;
   /// or when more than this share of them are deleted.
@@ -46,7 +53,8 @@ struct KdTreeOptions {
 /// Zhang 2021, "ikd-Tree: An Incremental K-D Tree for Robotic Applications"].
 /// Deterministic. Thread-compatible; a Rebuild may be worked on by another thread.
 class IncKdTree {
-  struct Node {
+  // Of one cache line: searching is fetching nodes.
+  struct alignas(64) Node {
     Eigen::Vector3f point = Eigen::Vector3f::Zero();
     Box box;  // of all nodes below, deleted ones included
     std::int32_t left = -1;
@@ -77,8 +85,8 @@ class IncKdTree {
 
   /// Adds a point as it is.
   void insert(const Eigen::Vector3f& point);
-  /// Adds a point unless its cube holds one that is nearer to the cube's middle; else it takes the
-  /// place of what the cube holds. False if it was not added.
+  /// Adds a point unless its cube holds one that is about as near to the cube's middle; else it
+  /// takes the place of what the cube holds. False if it was not added.
   bool insert_downsampled(const Eigen::Vector3f& point);
   /// Deletes the points inside a box, borders included.
   void erase(const Box& box);

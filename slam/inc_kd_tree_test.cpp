@@ -18,7 +18,7 @@ using Points = std::vector<Eigen::Vector3f>;
 /// What the tree should hold, kept the plain way.
 class BruteForce {
  public:
-  explicit BruteForce(float voxel_m) : voxel_m_(voxel_m) {}
+  BruteForce(float voxel_m, float margin_m) : voxel_m_(voxel_m), margin_m_(margin_m) {}
 
   void insert(const Eigen::Vector3f& p) { points_.push_back(p); }
   bool insert_downsampled(const Eigen::Vector3f& p) {
@@ -28,9 +28,9 @@ class BruteForce {
     const Eigen::Vector3i mine = cube(p);
     const Eigen::Vector3f middle =
         (mine.cast<float>() + Eigen::Vector3f::Constant(0.5F)) * voxel_m_;
-    const auto off = [&](const Eigen::Vector3f& q) { return (q - middle).squaredNorm(); };
+    const auto off = [&](const Eigen::Vector3f& q) { return (q - middle).norm(); };
     for (const auto& q : points_) {
-      if (cube(q) == mine && off(q) <= off(p)) return false;
+      if (cube(q) == mine && off(q) <= off(p) + margin_m_) return false;
     }
     std::erase_if(points_, [&](const auto& q) { return cube(q) == mine; });
     points_.push_back(p);
@@ -56,6 +56,7 @@ class BruteForce {
 
  private:
   float voxel_m_;
+  float margin_m_;
   Points points_;
 };
 
@@ -77,7 +78,8 @@ Box everything() {
 /// Random work on tree and plain list, which must stay the same.
 class Workload {
  public:
-  explicit Workload(unsigned seed) : random_(seed), tree_(options()), plain_(options().voxel_m) {}
+  explicit Workload(unsigned seed)
+      : random_(seed), tree_(options()), plain_(options().voxel_m, options().margin_m) {}
 
   static KdTreeOptions options() {
     KdTreeOptions options;

@@ -13,12 +13,13 @@ namespace {
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 // Below this ratio of smallest to largest curvature a degree of freedom is not seen at all.
-constexpr double kSingular = 1e-10;
+constexpr double kSingularJoint = 1e-10;
 constexpr double kConverged = 1e-5;
 
 struct NormalEquations {
   Matrix6 plane_hessian = Matrix6::Zero();
   Matrix6 point_hessian = Matrix6::Zero();
+  Matrix6 prior_hessian = Matrix6::Zero();
   Twist gradient = Twist::Zero();
   double plane_squares = 0.0;
   double plane_weight = 0.0;
@@ -76,11 +77,19 @@ void add_points(std::span<const PointTerm> points, const Pose& pose, double hube
       squares.trace() * Eigen::Matrix3d::Identity() - squares;
 }
 
-NormalEquations linearize(const Pose& pose, std::span<const PlaneTerm> planes,
-                          std::span<const PointTerm> points, const JointOptions& options) {
+// Close to it, where exp's derivative is that of a sum.
+void add_prior(const PosePrior& prior, const Pose& pose, NormalEquations& sum) {
+  sum.prior_hessian = prior.information;
+  sum.gradient += prior.information * se3_log(prior.T_odom_scan.inverse() * pose);
+}
+
+NormalEquations linearize(const Pose& pose, const JointTerms& terms, const JointOptions& options) {
   NormalEquations sum;
-  add_planes(planes, pose, options.plane_huber_m, sum);
-  add_points(points, pose, options.point_huber_m, sum);
+  add_planes(terms.planes, pose, options.plane_huber_m, sum);
+  sum.plane_hessian = terms.plane_projection * sum.plane_hessian * terms.plane_projection;
+  sum.gradient = terms.plane_projection * sum.gradient;
+  add_points(terms.points, pose, options.point_huber_m, sum);
+  if (terms.prior) add_prior(*terms.prior, pose, sum);
   return sum;
 }
 
@@ -90,28 +99,29 @@ double root_mean(double squares, double weight) {
 
 }  // namespace
 
-JointResult optimize_jointly(const Pose& start, std::span<const PlaneTerm> planes,
-                             std::span<const PointTerm> points, const JointOptions& options) {
+JointResult optimize_jointly(const Pose& start, const JointTerms& terms,
+                             const JointOptions& options) {
   JointResult result;
   Pose pose = start;
   for (int i = 0; i < options.max_iterations; ++i) {
-    const NormalEquations sum = linearize(pose, planes, points, options);
-    const Twist step = (sum.plane_hessian + sum.point_hessian).ldlt().solve(-sum.gradient);
+    const NormalEquations sum = linearize(pose, terms, options);
+    const Matrix6 hessian = sum.plane_hessian + sum.point_hessian + sum.prior_hessian;
+    const Twist step = hessian.ldlt().solve(-sum.gradient);
     if (!step.allFinite()) return result;
     pose.translation_m += pose.rotation * step.head<3>();
     pose.rotation = (pose.rotation * so3_exp(step.tail<3>())).normalized();
-    result.step_m = step.head<3>().norm();
     if (step.norm() < kConverged) break;
   }
-  const NormalEquations sum = linearize(pose, planes, points, options);
+  const NormalEquations sum = linearize(pose, terms, options);
   result.plane_hessian = sum.plane_hessian;
-  result.hessian = sum.plane_hessian + sum.point_hessian;
+  result.point_hessian = sum.point_hessian;
+  result.prior_hessian = sum.prior_hessian;
   result.plane_rms_m = root_mean(sum.plane_squares, sum.plane_weight);
   result.point_rms_m = root_mean(sum.point_squares, sum.point_weight);
   result.T_odom_scan = pose;
-  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(result.hessian, Eigen::EigenvaluesOnly);
-  result.ok =
-      pose.translation_m.allFinite() && eigen.eigenvalues()(0) > kSingular * eigen.eigenvalues()(5);
+  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(result.hessian(), Eigen::EigenvaluesOnly);
+  result.ok = pose.translation_m.allFinite() &&
+              eigen.eigenvalues()(0) > kSingularJoint * eigen.eigenvalues()(5);
   return result;
 }
 

@@ -46,7 +46,7 @@ double distance_m(const Pose& a, const Pose& b) {
 
 TEST(JointOptimizer, PlanesAloneFixThePoseInARoom) {
   const Scene scene = see(kTruth, {0, 1, 2}, 0, 1);
-  const JointResult result = optimize_jointly(kStart, scene.planes, scene.points);
+  const JointResult result = optimize_jointly(kStart, {scene.planes, scene.points});
   ASSERT_TRUE(result.ok);
   EXPECT_LT(distance_m(result.T_odom_scan, kTruth), 0.005);
   EXPECT_LT(result.T_odom_scan.rotation.angularDistance(kTruth.rotation), 0.001);
@@ -55,12 +55,12 @@ TEST(JointOptimizer, PlanesAloneFixThePoseInARoom) {
 
 TEST(JointOptimizer, InACorridorPlanesAloneAreNotEnough) {
   const Scene scene = see(kTruth, {1, 2}, 0, 2);
-  EXPECT_FALSE(optimize_jointly(kStart, scene.planes, scene.points).ok);
+  EXPECT_FALSE(optimize_jointly(kStart, {scene.planes, scene.points}).ok);
 }
 
 TEST(JointOptimizer, KeypointsFixWhatTheCorridorLeavesOpen) {
   const Scene scene = see(kTruth, {1, 2}, 60, 3);
-  const JointResult result = optimize_jointly(kStart, scene.planes, scene.points);
+  const JointResult result = optimize_jointly(kStart, {scene.planes, scene.points});
   ASSERT_TRUE(result.ok);
   EXPECT_LT(distance_m(result.T_odom_scan, kTruth), 0.01);
 }
@@ -68,7 +68,7 @@ TEST(JointOptimizer, KeypointsFixWhatTheCorridorLeavesOpen) {
 TEST(JointOptimizer, WrongPairsPullLittle) {
   Scene scene = see(kTruth, {0, 1, 2}, 100, 4);
   for (std::size_t i = 0; i < 15; ++i) scene.points[i].fixed_m.x() += 3.0;
-  const JointResult result = optimize_jointly(kStart, scene.planes, scene.points);
+  const JointResult result = optimize_jointly(kStart, {scene.planes, scene.points});
   ASSERT_TRUE(result.ok);
   EXPECT_LT(distance_m(result.T_odom_scan, kTruth), 0.03);
 }
@@ -76,7 +76,7 @@ TEST(JointOptimizer, WrongPairsPullLittle) {
 TEST(JointOptimizer, CurvatureIsThatOfTheResiduals) {
   // Central differences of half the plane terms' sum of squares.
   Scene scene = see(kTruth, {0, 1, 2}, 0, 5);
-  const JointResult at_optimum = optimize_jointly(kStart, scene.planes, {});
+  const JointResult at_optimum = optimize_jointly(kStart, {scene.planes, {}});
   const auto cost = [&](const Twist& step) {
     Pose pose = at_optimum.T_odom_scan;
     pose.translation_m += pose.rotation * step.head<3>();

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "slam/features.hpp"
+#include "slam/gravity_estimate.hpp"
 #include "slam/odometry_estimate.hpp"
 
 namespace glint::slam {
@@ -29,6 +31,8 @@ struct Keyframe {
   /// Covariance of the motion since the keyframe before it, as that of an OdometryEstimate: the
   /// odometry edge of the pose graph. Meaningless for the first one of a segment.
   Eigen::Matrix<double, 6, 6> edge_covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  /// Where up is at estimate.stamp, where an IMU told.
+  std::optional<FeltGravity> gravity;
 };
 
 }  // namespace glint::slam

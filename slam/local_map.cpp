@@ -10,6 +10,9 @@
 namespace glint::slam {
 namespace {
 
+// Distances are in single precision.
+constexpr float kRounding_m = 1e-4F;
+
 KdTreeOptions tree_options(const LocalMapOptions& options) {
   KdTreeOptions tree;
   tree.voxel_m = static_cast<float>(options.voxel_m);
@@ -22,30 +25,66 @@ LocalMap::LocalMap(LocalMapOptions options)
     : options_(options), ground_(tree_options(options)), general_(tree_options(options)) {}
 
 void LocalMap::associate(std::span<const Eigen::Vector3f> points_m, std::size_t ground_count,
-                         const Pose& T_odom_scan, std::vector<PlaneTerm>& terms) const {
+                         const Pose& T_odom_scan, std::vector<PlaneTerm>& terms) {
   terms.clear();
+  lookups_.resize(points_m.size());
   for (std::size_t i = 0; i < points_m.size(); ++i) {
-    const bool ground = i < ground_count;
-    const Eigen::Vector3d point_m = points_m[i].cast<double>();
-    const Eigen::Vector3d place_m = T_odom_scan * point_m;
-    auto term = plane_near(ground ? ground_ : general_, place_m);
-    if (!term) continue;
-    if (std::abs(term->normal.dot(place_m) - term->offset_m) > options_.largest_residual_m) {
-      continue;
-    }
-    term->point_m = point_m;
-    term->weight = ground ? options_.ground_weight : 1.0;
-    terms.push_back(*term);
+    const Eigen::Vector3d place_m = T_odom_scan * points_m[i].cast<double>();
+    Lookup& lookup = lookups_[i];
+    lookup.place_m = place_m.cast<float>();
+    lookup.near = tree_of(i < ground_count)
+                      .nearest(lookup.place_m, kMaxNeighbours,
+                               static_cast<float>(options_.largest_distance_m));
+    Neighbours near = lookup.near;
+    near.count = std::min(near.count, neighbours_wanted());
+    add_term(points_m[i], i < ground_count, place_m, near, terms);
   }
 }
 
-std::optional<PlaneTerm> LocalMap::plane_near(const IncKdTree& tree,
-                                              const Eigen::Vector3d& place_m) const {
-  // More than three, for the third may lie in line with the first two.
-  const bool span = options_.neighbours <= 3;
-  const Neighbours near = tree.nearest(place_m.cast<float>(), span ? 6 : options_.neighbours,
-                                       static_cast<float>(options_.largest_distance_m));
-  return span ? spanned(near) : fitted(near);
+void LocalMap::associate_again(std::span<const Eigen::Vector3f> points_m, std::size_t ground_count,
+                               const Pose& T_odom_scan, std::vector<PlaneTerm>& terms) {
+  terms.clear();
+  for (std::size_t i = 0; i < points_m.size(); ++i) {
+    const Eigen::Vector3d place_m = T_odom_scan * points_m[i].cast<double>();
+    const Neighbours near =
+        near_again(lookups_[i], tree_of(i < ground_count), place_m.cast<float>());
+    add_term(points_m[i], i < ground_count, place_m, near, terms);
+  }
+}
+
+// Points that were not among the nearest then are no nearer now than their least distance then,
+// less the way between the two places.
+Neighbours LocalMap::near_again(const Lookup& lookup, const IncKdTree& tree,
+                                const Eigen::Vector3f& place_m) const {
+  const auto largest_m = static_cast<float>(options_.largest_distance_m);
+  const int wanted = neighbours_wanted();
+  const Neighbours& then = lookup.near;
+  const bool full = then.count == kMaxNeighbours;
+  const float others_m = (full ? std::sqrt(then[then.count - 1].squared_distance_m2) : largest_m) -
+                         (place_m - lookup.place_m).norm() - kRounding_m;
+  Neighbours near;
+  float limit_m2 = largest_m * largest_m;
+  for (int i = 0; i < then.count; ++i) {
+    const Eigen::Vector3f& point_m = then[i].point_m;
+    near.offer(point_m, (point_m - place_m).squaredNorm(), wanted, limit_m2);
+  }
+  if (near.count == wanted && others_m > 0 && limit_m2 < others_m * others_m) return near;
+  return tree.nearest(place_m, wanted, largest_m);
+}
+
+// More than three, for the third may lie in line with the first two.
+int LocalMap::neighbours_wanted() const {
+  return options_.neighbours <= 3 ? 6 : options_.neighbours;
+}
+
+void LocalMap::add_term(const Eigen::Vector3f& point_m, bool ground, const Eigen::Vector3d& place_m,
+                        const Neighbours& near, std::vector<PlaneTerm>& terms) const {
+  auto term = options_.neighbours <= 3 ? spanned(near) : fitted(near);
+  if (!term) return;
+  if (std::abs(term->normal.dot(place_m) - term->offset_m) > options_.largest_residual_m) return;
+  term->point_m = point_m.cast<double>();
+  term->weight = ground ? options_.ground_weight : 1.0;
+  terms.push_back(*term);
 }
 
 // The plane of the three nearest points that are not in line

@@ -9,7 +9,7 @@
 
 #include "driver/core/pose.hpp"
 #include "slam/inc_kd_tree.hpp"
-#include "slam/joint_optimizer.hpp"
+#include "slam/joint_terms.hpp"
 
 namespace glint::slam {
 
@@ -36,7 +36,11 @@ class LocalMap {
   /// The plane terms of a scan seen from about T_odom_scan; the first `ground_count` points are on
   /// the ground. Points without a plane near them give none.
   void associate(std::span<const Eigen::Vector3f> points_m, std::size_t ground_count,
-                 const Pose& T_odom_scan, std::vector<PlaneTerm>& terms) const;
+                 const Pose& T_odom_scan, std::vector<PlaneTerm>& terms);
+  /// The same as associate() for the points that it last had, from a pose somewhat off that one.
+  /// Faster: most nearest points are still among those found then. Not after add().
+  void associate_again(std::span<const Eigen::Vector3f> points_m, std::size_t ground_count,
+                       const Pose& T_odom_scan, std::vector<PlaneTerm>& terms);
   /// Adds a scan's points and lets go what is far from it.
   void add(std::span<const Eigen::Vector3f> points_m, std::size_t ground_count,
            const Pose& T_odom_scan);
@@ -52,8 +56,18 @@ class LocalMap {
   void adopt(Rebuild&& rebuild);
 
  private:
-  [[nodiscard]] std::optional<PlaneTerm> plane_near(const IncKdTree& tree,
-                                                    const Eigen::Vector3d& place_m) const;
+  /// What the tree has near a place that was looked up; more than planes need.
+  struct Lookup {
+    Eigen::Vector3f place_m;
+    Neighbours near;
+  };
+
+  [[nodiscard]] int neighbours_wanted() const;
+  [[nodiscard]] Neighbours near_again(const Lookup& lookup, const IncKdTree& tree,
+                                      const Eigen::Vector3f& place_m) const;
+  void add_term(const Eigen::Vector3f& point_m, bool ground, const Eigen::Vector3d& place_m,
+                const Neighbours& near, std::vector<PlaneTerm>& terms) const;
+  [[nodiscard]] const IncKdTree& tree_of(bool ground) const { return ground ? ground_ : general_; }
   [[nodiscard]] std::optional<PlaneTerm> spanned(const Neighbours& near) const;
   [[nodiscard]] std::optional<PlaneTerm> fitted(const Neighbours& near) const;
 
@@ -61,6 +75,7 @@ class LocalMap {
   IncKdTree ground_;
   IncKdTree general_;
   std::optional<Eigen::Vector3d> kept_around_m_;
+  std::vector<Lookup> lookups_;  // by associate()'s points
 };
 
 }  // namespace glint::slam

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
+#include <random>
 #include <vector>
 
 namespace glint::slam {
@@ -81,6 +83,61 @@ TEST_P(LocalMaps, WhatIsFarBehindIsLetGo) {
   EXPECT_EQ(map_.size(), before);
   map_.associate(std::vector<Eigen::Vector3f>{{1.1F, 0.6F, -0.9F}}, 1, {}, terms_);
   EXPECT_TRUE(terms_.empty());
+}
+
+TEST_P(LocalMaps, LookingAgainFindsWhatLookingAnewDoes) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> spread(-3.0F, 3.0F);
+  std::vector<Eigen::Vector3f> points(2000);
+  for (Eigen::Vector3f& point : points)
+    point = {spread(random), spread(random), 0.1F * spread(random)};
+  map_.add(points, 0, {});
+  const std::vector<Eigen::Vector3f> scan(points.begin(), points.begin() + 300);
+  for (const double moved_m : {0.0, 0.01, 0.1, 0.5, 3.0}) {
+    const Pose there{Eigen::Quaterniond(Eigen::AngleAxisd(0.1 * moved_m, Eigen::Vector3d::UnitZ())),
+                     {moved_m, -moved_m, 0.0}};
+    std::vector<PlaneTerm> again;
+    map_.associate(scan, 0, {}, terms_);
+    map_.associate_again(scan, 0, there, again);
+    map_.associate(scan, 0, there, terms_);
+    ASSERT_EQ(again.size(), terms_.size());
+    ASSERT_GT(again.size(), moved_m < 1.0 ? 150U : 0U);
+    for (std::size_t i = 0; i < again.size(); ++i) {
+      EXPECT_EQ(again[i].point_m, terms_[i].point_m);
+      EXPECT_EQ(again[i].normal, terms_[i].normal);
+      EXPECT_EQ(again[i].offset_m, terms_[i].offset_m);
+    }
+  }
+}
+
+// Of many noisy measurements the map must not pick those that the noise brought nearest to the
+// middles of its cubes.
+TEST_P(LocalMaps, AWallSeenOftenStaysWhereItIs) {
+  std::mt19937 random(6);
+  std::normal_distribution<float> noise(0.0F, 0.02F);
+  constexpr float kWall_m = 5.05F;  // in a cube from 5.0 to 5.2 m
+  for (int scan = 0; scan < 50; ++scan) {
+    std::vector<Eigen::Vector3f> wall;
+    for (int i = -40; i <= 40; ++i) {
+      for (int j = 0; j <= 10; ++j) {
+        wall.emplace_back(kWall_m + noise(random), 0.1F * static_cast<float>(i),
+                          0.1F * static_cast<float>(j));
+      }
+    }
+    map_.add(wall, 0, {});
+  }
+  std::vector<Eigen::Vector3f> seen;
+  for (int i = -30; i <= 30; ++i) seen.emplace_back(kWall_m, 0.1F * static_cast<float>(i), 0.5F);
+  map_.associate(seen, 0, {}, terms_);
+  ASSERT_GT(terms_.size(), 30U);
+  double off_m = 0.0;
+  for (const PlaneTerm& term : terms_) {
+    const Eigen::Vector3d normal =
+        term.normal.x() > 0 ? term.normal : Eigen::Vector3d(-term.normal);
+    off_m += (normal.dot(term.point_m) - (term.normal.x() > 0 ? 1 : -1) * term.offset_m) /
+             static_cast<double>(terms_.size());
+  }
+  EXPECT_NEAR(off_m, 0.0, 0.01);
 }
 
 INSTANTIATE_TEST_SUITE_P(Neighbours, LocalMaps, testing::Values(3, 5));

@@ -32,6 +32,7 @@ struct LoopCandidate {
   int inliers = 0;          ///< Of them, after the 3-D-3-D RANSAC.
   double overlap = 0.0;     ///< Share of the points that found a surface.
   double rms_m = 0.0;       ///< Of their distances to it.
+  int corners = 0;          ///< Of the maps from above that agree, if these brought it up.
 };
 
 }  // namespace glint::slam

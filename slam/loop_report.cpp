@@ -17,6 +17,7 @@ nlohmann::ordered_json to_json(const LoopReport& report) {
   const LoopCandidate& c = report.candidate;
   nlohmann::ordered_json out{{"from", c.from}, {"to", c.to}, {"accepted", c.accepted}};
   if (!c.reason.empty()) out["reason"] = c.reason;
+  if (c.corners > 0) out["corners"] = c.corners;
   out["similarity"] = c.similarity;
   out["matches"] = c.matches;
   out["inliers"] = c.inliers;

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 #include <vector>
 
 #include "slam/keyframe.hpp"
@@ -13,8 +12,9 @@ namespace glint::slam {
 
 /// What the search for a loop found at one keyframe.
 struct LoopSearch {
-  std::optional<LoopEdge> edge;           ///< To that keyframe, from an earlier one.
-  std::vector<LoopCandidate> candidates;  ///< Looked into at this keyframe, with the edge's own.
+  /// From an earlier keyframe to that one first, and to others shortly before it.
+  std::vector<LoopEdge> edges;
+  std::vector<LoopCandidate> candidates;  ///< Looked into at this keyframe, with the edges' own.
 };
 
 /// Takes each keyframe, in order, and tells which place seen before it shows. Called by the back

@@ -8,21 +8,30 @@
 #include <numbers>
 #include <utility>
 
+#include "slam/recent_map.hpp"
+#include "slam/voxel_plane_map.hpp"
+
 namespace glint::slam {
 namespace {
 
 // Associations are made anew while a solution moves the scan by more than this.
-constexpr double kSettled_m = 0.03;
-constexpr double kSettled_rad = 0.002;
+constexpr double kPoseSettled_m = 0.03;
+constexpr double kPoseSettled_rad = 0.002;
 // A point that the sensor's turning displaced by more, in a scan that is taken as rigid, would blur
 // the map.
 constexpr double kDisplaced_m = 0.1;
+// What a plane term of weight 1 is good to, squared: the unit of all weights.
+constexpr double kUnit_m2 = 0.02 * 0.02;
+// Median length of a vector with that deviation along each axis; what the best keypoints reach.
+constexpr double kMedianToSigma = 0.65;
+constexpr double kBestKeypoint_m = 0.02;
 // With fewer residuals there is nothing to be said.
-constexpr std::size_t kFewestTerms = 30;
+constexpr std::size_t kFewestJointTerms = 30;
 
 PlaneFeatureOptions plane_options(const SlamConfig& config) {
   PlaneFeatureOptions options;
   options.wanted_points = config.plane_points;
+  options.in_order = config.plane_map == "tree";
   return options;
 }
 
@@ -41,10 +50,21 @@ LocalMapOptions map_options(const SlamConfig& config) {
   return options;
 }
 
+std::unique_ptr<PlaneMap> make_map(const SlamConfig& config) {
+  if (config.plane_map == "tree") {
+    return std::make_unique<RecentMap>(map_options(config), config.local_map_reach_m);
+  }
+  VoxelPlaneOptions options;
+  options.ground_weight = config.ground_weight;
+  options.reach_m = config.local_map_reach_m;
+  return std::make_unique<VoxelPlaneMap>(options);
+}
+
 WindowOptions window_options(const SlamConfig& config) {
   WindowOptions options;
   options.frames = config.ba_frames;
   options.max_hamming_bits = config.match_max_distance;
+  options.means = config.ba_by_noise;
   return options;
 }
 
@@ -72,31 +92,44 @@ MapOptimizer::MapOptimizer(const SensorInfo& info, const SlamConfig& config,
       turn_radps_(beam_turn_radps(info, *lut)),
       extractor_(info, plane_options(config), std::move(lut)),
       ground_finder_(ground_options(config)),
-      map_(map_options(config)),
+      map_(make_map(config)),
       window_(window_options(config)) {}
 
-void MapOptimizer::observe(const LidarScan& scan, const ScanImages& images,
-                           const ConstantVelocity* motion, const Eigen::Vector3d& up) {
-  rigid_ = motion == nullptr;
+void MapOptimizer::observe(const ScanImages& images, std::span<const Pose> T_reference_column,
+                           const Eigen::Vector3d& up) {
+  rigid_ = T_reference_column.empty();
   points_m_.clear();
   ground_count_ = 0;
   ground_plane_.reset();
   if (!config_.planes) return;
-  points_m_ = extractor_.extract(scan, images, motion);
+  points_m_ = extractor_.extract(images, T_reference_column);
   if (config_.ground) ground_plane_ = ground_finder_.find(points_m_, up, &ground_count_);
 }
 
 MapOptimization MapOptimizer::optimize(const Features& features, const std::vector<Match>& matches,
-                                       const Pose& start) {
+                                       const Pose& start, const std::optional<PosePrior>& prior) {
   MapOptimization outcome;
   Pose pose = start;
   JointResult result;
+  JointTerms terms;
+  if (prior) {
+    terms.prior = prior;
+    terms.prior->information *= kUnit_m2;
+  }
   for (int round = 0; round < config_.map_rounds; ++round) {
-    map_.associate(points_m_, ground_count_, pose, planes_);
-    // Keypoints are told apart by their looks: they keep their partners.
-    if (round == 0) associate_keypoints(features, matches, pose);
-    if (planes_.size() + points_.size() < kFewestTerms) return outcome;
-    result = optimize_jointly(pose, planes_, points_);
+    if (round == 0) {
+      map_->associate(points_m_, ground_count_, pose, planes_);
+      associate_keypoints(features, matches, pose);
+    } else {
+      // Keypoints are told apart by their looks: they keep their partners.
+      map_->associate_again(points_m_, ground_count_, pose, planes_);
+    }
+    if (planes_.size() + points_.size() < kFewestJointTerms) return outcome;
+    terms.planes = planes_;
+    terms.points = points_;
+    if (config_.degeneracy) leave_open(pose, terms, outcome.weak_axes);
+    if (config_.ba_by_noise) weigh_keypoints(pose);
+    result = optimize_jointly(pose, terms);
     if (!result.ok) return outcome;
     const bool done = settled(pose, result.T_odom_scan);
     pose = result.T_odom_scan;
@@ -109,11 +142,43 @@ MapOptimization MapOptimizer::optimize(const Features& features, const std::vect
                                             static_cast<double>(points_m_.size());
   outcome.plane_rms_m = result.plane_rms_m;
   outcome.point_terms = static_cast<int>(points_.size());
-  const double variance_m2 = std::max(
-      1e-4, result.plane_rms_m * result.plane_rms_m + result.point_rms_m * result.point_rms_m);
-  outcome.covariance = variance_m2 * result.hessian.inverse();
+  outcome.covariance = unit_variance_m2(result) * result.hessian().inverse();
   outcome.ok = outcome.covariance.allFinite();
+  for (WeakAxis& axis : outcome.weak_axes) {
+    const bool measured = axis.rotation && prior && prior->turn_is_measured;
+    axis.critical = !measured && !carried_by_points(axis, points_, pose);
+  }
+  weak_before_ = outcome.weak_axes;
   return outcome;
+}
+
+// Of a residual of unit weight: what the weights stand for, or as the residuals show.
+double MapOptimizer::unit_variance_m2(const JointResult& result) const {
+  if (config_.ba_by_noise) return kUnit_m2;
+  return std::max(
+      1e-4, result.plane_rms_m * result.plane_rms_m + result.point_rms_m * result.point_rms_m);
+}
+
+// Keypoints are worth what they are good to: pictures on walls tell to the centimetre, what noise
+// and foliage offer is off by more than they would tell. The median of their residuals says which.
+void MapOptimizer::weigh_keypoints(const Pose& pose) {
+  residuals_m_.clear();
+  for (const PointTerm& term : points_) {
+    residuals_m_.push_back((pose * term.point_m - term.fixed_m).norm());
+  }
+  if (residuals_m_.empty()) return;
+  const auto middle = residuals_m_.begin() + static_cast<std::ptrdiff_t>(residuals_m_.size() / 2);
+  std::nth_element(residuals_m_.begin(), middle, residuals_m_.end());
+  const double sigma_m = std::max(kMedianToSigma * *middle, kBestKeypoint_m);
+  const double factor = kUnit_m2 / (sigma_m * sigma_m) * config_.ba_weight / keypoint_weight_;
+  for (PointTerm& term : points_) term.weight *= factor;
+  keypoint_weight_ *= factor;
+}
+
+// Along weak axes the surfaces' noise would outvote keypoints and prior: it gets no vote.
+void MapOptimizer::leave_open(const Pose& pose, JointTerms& terms, WeakAxes& weak) const {
+  weak = find_weak_axes(planes_, pose, weak_before_);
+  terms.plane_projection = projection_without(weak, pose);
 }
 
 void MapOptimizer::associate_keypoints(const Features& features, const std::vector<Match>& matches,
@@ -121,6 +186,7 @@ void MapOptimizer::associate_keypoints(const Features& features, const std::vect
   points_.clear();
   if (config_.ba) points_ = window_.associate(features, matches, pose);
   for (PointTerm& term : points_) term.weight *= config_.ba_weight;
+  keypoint_weight_ = config_.ba_weight;
 }
 
 void MapOptimizer::drop_displaced(const Eigen::Vector3d& turn_radps) {
@@ -145,25 +211,21 @@ double MapOptimizer::seconds_from_middle(const Eigen::Vector3f& point_m) const {
 
 bool MapOptimizer::settled(const Pose& from, const Pose& to) const {
   const Pose step = from.inverse() * to;
-  return step.translation_m.norm() < kSettled_m && so3_log(step.rotation).norm() < kSettled_rad;
+  return step.translation_m.norm() < kPoseSettled_m &&
+         so3_log(step.rotation).norm() < kPoseSettled_rad;
 }
 
 void MapOptimizer::remember(const Features& features, const std::vector<Match>& matches,
                             const Pose& T_odom_scan, const Twist& velocity) {
   if (rigid_) drop_displaced(velocity.tail<3>());
-  map_.add(points_m_, ground_count_, T_odom_scan);
-  // One large subtree a scan, here: some milliseconds now and then, and the result depends on the
-  // scans alone.
-  if (auto rebuild = map_.take_rebuild()) {
-    rebuild->tree.run();
-    map_.adopt(std::move(*rebuild));
-  }
+  map_->add(points_m_, ground_count_, T_odom_scan);
   if (config_.ba) window_.push(features, matches, T_odom_scan);
 }
 
 void MapOptimizer::reset() {
-  map_.clear();
+  map_->clear();
   window_.clear();
+  weak_before_ = {};
   ground_finder_.reset();
 }
 

@@ -5,19 +5,20 @@
 #include <Eigen/Core>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
-#include "driver/core/lidar_scan.hpp"
+#include "driver/core/pose.hpp"
 #include "driver/core/sensor_info.hpp"
 #include "driver/core/xyz_lut.hpp"
 #include "slam/config.hpp"
-#include "slam/deskew.hpp"
+#include "slam/degeneracy.hpp"
 #include "slam/features.hpp"
 #include "slam/ground.hpp"
 #include "slam/joint_optimizer.hpp"
-#include "slam/local_map.hpp"
 #include "slam/matching.hpp"
 #include "slam/plane_features.hpp"
+#include "slam/plane_map.hpp"
 #include "slam/scan_images.hpp"
 #include "slam/window_ba.hpp"
 
@@ -33,6 +34,8 @@ struct MapOptimization {
   double overlap = 0.0;      ///< Share of the scan's surface points that found a plane.
   double plane_rms_m = 0.0;  ///< Of their distances to it.
   int point_terms = 0;
+  /// What the surfaces leave open, and which of it the keypoints do too.
+  WeakAxes weak_axes;
 };
 
 /// Corrects the odometry's drift: the scan's surfaces against those of the local map, and its
@@ -42,26 +45,32 @@ class MapOptimizer {
  public:
   MapOptimizer(const SensorInfo& info, const SlamConfig& config, std::shared_ptr<const XyzLut> lut);
 
-  /// Takes a scan's surfaces and parts the ground from them. `motion` moves its points to one
-  /// instant; null: it is taken as rigid. `up` is in the scan frame.
-  void observe(const LidarScan& scan, const ScanImages& images, const ConstantVelocity* motion,
+  /// Takes a scan's surfaces and parts the ground from them. The poses of its columns bring its
+  /// points to one instant; none: it is taken as rigid. `up` is in the scan frame.
+  void observe(const ScanImages& images, std::span<const Pose> T_reference_column,
                const Eigen::Vector3d& up);
   /// The pose of the observed scan, which odometry places at `start`; `matches` are the keypoints
-  /// that odometry could match, none if it could not.
+  /// that odometry could match, none if it could not. `prior`: where the motion before leads, in
+  /// 1/m^2 and 1/rad^2.
   MapOptimization optimize(const Features& features, const std::vector<Match>& matches,
-                           const Pose& start);
+                           const Pose& start, const std::optional<PosePrior>& prior = {});
   /// Takes the observed scan into map and window, at its final pose. Of a scan that is taken as
   /// rigid, what the sensor's turning displaced while it was measured is left out of the map.
   void remember(const Features& features, const std::vector<Match>& matches,
                 const Pose& T_odom_scan, const Twist& velocity);
+  /// About so many points on surfaces are taken from the next scans.
+  void set_plane_points(int points) { extractor_.set_wanted(points); }
   /// Forgets map and window.
   void reset();
 
-  [[nodiscard]] LocalMap& map() { return map_; }
+  [[nodiscard]] const PlaneMap& map() const { return *map_; }
   /// The ground of the observed scan, if it shows any.
   [[nodiscard]] const std::optional<GroundPlane>& ground() const { return ground_plane_; }
 
  private:
+  [[nodiscard]] double unit_variance_m2(const JointResult& result) const;
+  void weigh_keypoints(const Pose& pose);
+  void leave_open(const Pose& pose, JointTerms& terms, WeakAxes& weak) const;
   void associate_keypoints(const Features& features, const std::vector<Match>& matches,
                            const Pose& pose);
   void drop_displaced(const Eigen::Vector3d& turn_radps);
@@ -73,8 +82,9 @@ class MapOptimizer {
   double turn_radps_ = 0.0;  ///< Of the beams; positive counter-clockwise.
   PlaneExtractor extractor_;
   GroundFinder ground_finder_;
-  LocalMap map_;
+  std::unique_ptr<PlaneMap> map_;
   SlidingWindow window_;
+  WeakAxes weak_before_;  ///< Of the last optimised scan.
 
   std::vector<Eigen::Vector3f> points_m_;  ///< Of the scan; those on the ground first.
   std::size_t ground_count_ = 0;
@@ -82,6 +92,8 @@ class MapOptimizer {
   std::optional<GroundPlane> ground_plane_;
   std::vector<PlaneTerm> planes_;
   std::vector<PointTerm> points_;
+  double keypoint_weight_ = 1.0;  ///< What their weights were multiplied with.
+  std::vector<double> residuals_m_;
 };
 
 }  // namespace glint::slam

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "slam/features.hpp"
+#include "slam/nearest_descriptors.hpp"
 
 namespace glint::slam {
 
@@ -37,8 +38,7 @@ class Matcher {
 
  private:
   MatchOptions options_;
-  std::vector<Match> best_of_current_;
-  std::vector<Match> best_of_reference_;
+  NearestDescriptors nearest_;
   std::vector<Match> matches_;
 };
 

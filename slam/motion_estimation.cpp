@@ -136,7 +136,9 @@ void Registrar::select_inliers(const std::vector<PointPair>& pairs, const Pose& 
 
 Registration Registrar::align(const std::vector<PointPair>& pairs, const Pose& predicted) {
   if (pairs.size() < 3) return {};
-  select_inliers(pairs, robust_start(pairs, predicted));
+  select_inliers(pairs, predicted);
+  const double borne_out = static_cast<double>(inliers_.size()) / static_cast<double>(pairs.size());
+  if (borne_out < options_.convincing_share) select_inliers(pairs, robust_start(pairs, predicted));
   if (inliers_.size() < 3) return {};
   return refine(pairs, weighted_umeyama(inliers_));
 }

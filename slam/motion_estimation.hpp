@@ -22,6 +22,8 @@ struct RegistrationOptions {
   double huber_m = 0.1;    ///< Scale of the Huber kernel.
   int min_inliers = 12;
   int hypotheses = 200;  ///< Three-point samples of the robust start.
+  /// Nothing is sampled where so large a share of the pairs bears the predicted motion out.
+  double convincing_share = 2.0;
   int max_iterations = 20;
 };
 

@@ -146,5 +146,26 @@ TEST_F(RegistrarTest, RepeatsBitForBit) {
   EXPECT_EQ(a.T_reference_current.rotation.coeffs(), b.T_reference_current.rotation.coeffs());
 }
 
+TEST(Registrar, APredictionThatIsBorneOutNeedsNoSamples) {
+  RegistrationOptions options;
+  options.hypotheses = 0;
+  options.convincing_share = 0.5;
+  Registrar registrar(options);
+  const Pose truth{so3_exp({0.02, -0.01, 0.1}), {0.4, -0.1, 0.05}};
+  std::vector<PointPair> pairs;
+  for (int i = 0; i < 40; ++i) {
+    const double angle = 0.4 * i;
+    const Eigen::Vector3d x_m(6.0 * std::cos(angle), 4.0 * std::sin(angle), 0.05 * i);
+    pairs.push_back({truth * x_m, x_m, 1.0});
+    if (i % 4 == 0) pairs.back().reference_m.z() += 3.0;
+  }
+  const Pose near = truth * se3_exp((Twist() << 0.05, -0.03, 0.02, 0.0, 0.0, 0.005).finished());
+  const Registration found = registrar.align(pairs, near);
+  ASSERT_TRUE(found.ok);
+  EXPECT_LT((found.T_reference_current.translation_m - truth.translation_m).norm(), 1e-4);
+  EXPECT_FALSE(registrar.align(pairs, {so3_exp({0.0, 0.0, 2.0}), {5.0, 0.0, 0.0}}).ok)
+      << "without samples a wrong prediction leads nowhere";
+}
+
 }  // namespace
 }  // namespace glint::slam

@@ -8,6 +8,7 @@
 
 #include "driver/core/pose.hpp"
 #include "driver/core/time.hpp"
+#include "slam/degeneracy.hpp"
 
 namespace glint::slam {
 
@@ -33,6 +34,8 @@ struct OdometryEstimate {
   /// Steps each time tracking restarts without a link to what came before.
   std::uint32_t segment = 0;
   double completeness = 0.0;
+  /// What the scan's surfaces leave open.
+  WeakAxes weak_axes;
   int keypoints = 0;
   int matches = 0;
   int inliers = 0;

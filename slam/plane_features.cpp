@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace glint::slam {
 namespace {
@@ -44,10 +45,9 @@ PlaneExtractor::PlaneExtractor(const SensorInfo& info, PlaneFeatureOptions optio
   voxel_table_.resize(size);
 }
 
-const std::vector<Eigen::Vector3f>& PlaneExtractor::extract(const LidarScan& scan,
-                                                            const ScanImages& images,
-                                                            const ConstantVelocity* motion) {
-  place_columns(scan, motion);
+const std::vector<Eigen::Vector3f>& PlaneExtractor::extract(
+    const ScanImages& images, std::span<const Pose> T_reference_column) {
+  place_columns(T_reference_column);
   flat_.clear();
   for (int row = 0; row < images.range_mm.rows; ++row) {
     fill_ring(images, row);
@@ -57,13 +57,11 @@ const std::vector<Eigen::Vector3f>& PlaneExtractor::extract(const LidarScan& sca
   return kept_;
 }
 
-void PlaneExtractor::place_columns(const LidarScan& scan, const ConstantVelocity* motion) {
-  rigid_ = motion == nullptr;
-  if (rigid_) return;
-  for (std::size_t m = 0; m < scan.column_time.size(); ++m) {
-    const Pose T_reference_column = motion->at(scan.column_time[m]);
-    rotation_[m] = T_reference_column.rotation.toRotationMatrix().cast<float>();
-    translation_m_[m] = T_reference_column.translation_m.cast<float>();
+void PlaneExtractor::place_columns(std::span<const Pose> T_reference_column) {
+  rigid_ = T_reference_column.empty();
+  for (std::size_t m = 0; m < T_reference_column.size(); ++m) {
+    rotation_[m] = T_reference_column[m].rotation.toRotationMatrix().cast<float>();
+    translation_m_[m] = T_reference_column[m].translation_m.cast<float>();
   }
 }
 
@@ -107,7 +105,13 @@ void PlaneExtractor::thin_out() {
   std::fill(voxel_table_.begin(), voxel_table_.end(), 0U);
   kept_.clear();
   const std::size_t mask = voxel_table_.size() - 1;
-  for (const Eigen::Vector3f& point : flat_) {
+  // All of them once, each far from the last.
+  std::size_t step = options_.in_order ? 1 : flat_.size() * 5 / 8;
+  while (std::gcd(step, flat_.size()) > 1) ++step;
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < flat_.size(); ++i) {
+    const Eigen::Vector3f& point = flat_[next];
+    next = (next + step) % flat_.size();
     const std::uint64_t key = voxel_key(point, static_cast<float>(voxel_m_));
     std::size_t slot = (key * 0x9E37'79B9'7F4A'7C15ULL) >> 20U & mask;
     while (voxel_table_[slot] != 0 && voxel_table_[slot] != key) slot = (slot + 1) & mask;

@@ -5,12 +5,12 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
-#include "driver/core/lidar_scan.hpp"
+#include "driver/core/pose.hpp"
 #include "driver/core/sensor_info.hpp"
 #include "driver/core/xyz_lut.hpp"
-#include "slam/deskew.hpp"
 #include "slam/scan_images.hpp"
 
 namespace glint::slam {
@@ -21,8 +21,11 @@ struct PlaneFeatureOptions {
   double largest_curvature_m2 = 0.1;
   /// About so many points are kept; the voxels that thin them out are sized to give this number.
   int wanted_points = 1800;
+  /// Of a voxel's points that is kept which was measured first; else any of them. The first ones
+  /// lie towards the beams' turning: surfaces that average them come out bent.
+  bool in_order = true;
   double smallest_voxel_m = 0.1;
-  double largest_voxel_m = 1.0;
+  double largest_voxel_m = 2.0;
 };
 
 /// Picks points on surfaces from a scan: those whose neighbours on the same ring lie evenly around
@@ -33,15 +36,17 @@ class PlaneExtractor {
   PlaneExtractor(const SensorInfo& info, PlaneFeatureOptions options,
                  std::shared_ptr<const XyzLut> lut);
 
-  /// Points on surfaces, m, in the sensor frame at the motion's reference time. Without a motion
-  /// the scan is taken as rigid. Valid until the next call.
-  const std::vector<Eigen::Vector3f>& extract(const LidarScan& scan, const ScanImages& images,
-                                              const ConstantVelocity* motion);
+  /// Points on surfaces, m, in the sensor frame at the scan's reference time. Without poses of the
+  /// columns the scan is taken as rigid. Valid until the next call.
+  const std::vector<Eigen::Vector3f>& extract(const ScanImages& images,
+                                              std::span<const Pose> T_reference_column = {});
+  /// About so many points are taken from the next scans.
+  void set_wanted(int points) { options_.wanted_points = points; }
   /// Edge of the voxels that thinned the last scan.
   [[nodiscard]] double voxel_m() const { return voxel_m_; }
 
  private:
-  void place_columns(const LidarScan& scan, const ConstantVelocity* motion);
+  void place_columns(std::span<const Pose> T_reference_column);
   void fill_ring(const ScanImages& images, int row);
   void take_flat_points();
   void thin_out();

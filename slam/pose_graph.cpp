@@ -4,7 +4,6 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <set>
 
 namespace glint::slam {
 namespace {
@@ -21,9 +20,14 @@ constexpr double kStepFloor_rad = 0.05 * kRadPerDeg;
 constexpr double kLoopFloor_m = 0.02;
 constexpr double kLoopFloor_rad = 0.15 * kRadPerDeg;
 
-// Mean of chi^2 with six degrees of freedom, and the bound that 95 % stay below.
+// Of chi^2 with six degrees of freedom.
 constexpr double kMeanChiSquared = 6.0;
-constexpr double kLargestChiSquared = 12.6;
+
+// Neighbours felt gravity over the same seconds; only every so often it is something new.
+constexpr std::int64_t kSightInterval_ns = 8'000'000'000;
+// A tilt that is worth moving the map for, when it is beyond doubt.
+constexpr double kWorthTilt_rad = 0.5 * kRadPerDeg;
+constexpr double kBeyondDoubt = 3.0;
 
 Matrix6 floor_covariance(double sigma_m, double sigma_rad) {
   Twist variances;
@@ -51,7 +55,33 @@ const Pose& PoseGraph::add(const Keyframe& keyframe) {
       {keyframe.id, estimate.sequence, estimate.segment, keyframe.estimate.T_odom_sensor});
   step_covariances_.emplace_back(static_cast<double>(steps) * covariance);
   poses_.push_back(T_map_sensor);
+  consistency_.add(nodes_.back(), step_covariances_.back());
+  if (options_.gravity && keyframe.gravity) take_gravity(keyframe);
   return poses_.back();
+}
+
+void PoseGraph::take_gravity(const Keyframe& keyframe) {
+  const OdometryEstimate& estimate = keyframe.estimate;
+  if (!sights_.empty() && sights_.back().segment == estimate.segment) {
+    const std::int64_t since_ns = estimate.stamp - sights_.back().stamp;
+    if (since_ns >= 0 && since_ns < kSightInterval_ns) return;
+  }
+  sights_.push_back({estimate.stamp, estimate.segment, nodes_.size() - 1, *keyframe.gravity});
+  std::vector<Pose> poses = poses_;
+  std::vector<GravityFactor> factors = gravity_factors(join_groups(poses));
+  const GravityFactor newest = factors.back();
+  std::erase_if(factors, [&](const GravityFactor& f) { return f.group != newest.group; });
+  const double tilt = tilt_rad(newest, poses_.back(), fit_gravity(factors, poses_));
+  tilted_ |= tilt > std::max(kWorthTilt_rad, kBeyondDoubt * newest.felt.sigma_rad);
+}
+
+std::vector<GravityFactor> PoseGraph::gravity_factors(std::span<const std::uint32_t> group) const {
+  std::vector<GravityFactor> factors;
+  factors.reserve(sights_.size());
+  for (const GravitySight& sight : sights_) {
+    factors.push_back({sight.node, group[sight.node], sight.felt});
+  }
+  return factors;
 }
 
 std::optional<std::size_t> PoseGraph::find(std::uint64_t id) const {
@@ -89,7 +119,18 @@ bool PoseGraph::joined(const LoopEdge& loop) const {
 
 void PoseGraph::add_loop(const LoopEdge& loop) {
   const GraphEdge edge = graph_edge(loop).value();
-  loops_.push_back({loop, edge, drift_factor(edge), false});
+  Loop& added = loops_.emplace_back(Loop{loop, edge, drift_factor(edge), false, next_loop_++, {}});
+  if (options_.loop_consistency) note_contradictions(added);
+}
+
+void PoseGraph::note_contradictions(Loop& loop) {
+  const auto note = [&](Loop& other) {
+    if (&other == &loop || !consistency_.contradict(other.graph_edge, loop.graph_edge)) return;
+    loop.against.push_back(other.number);
+    other.against.push_back(loop.number);
+  };
+  std::ranges::for_each(loops_, note);
+  std::ranges::for_each(aside_, note);
 }
 
 // The loop shows how far odometry drifted on the way. Where that is more than its covariance would
@@ -105,80 +146,6 @@ double PoseGraph::drift_factor(const GraphEdge& loop) const {
   const Twist off =
       se3_log(loop.T_from_to.inverse() * (poses_[loop.from].inverse() * poses_[loop.to]));
   return std::max(1.0, off.dot(covariance.llt().solve(off)) / kMeanChiSquared);
-}
-
-// The group of each node, named by its lowest segment: loop after loop joins the groups of its
-// ends. The later one is then set down in `poses` where the loop has it.
-std::vector<std::uint32_t> PoseGraph::join_groups(std::span<Pose> poses) const {
-  std::vector<std::uint32_t> group;
-  group.reserve(nodes_.size());
-  for (const GraphNode& node : nodes_) group.push_back(node.segment);
-  for (const Loop& loop : loops_) {
-    const GraphEdge& edge = loop.graph_edge;
-    const std::uint32_t stays = std::min(group[edge.from], group[edge.to]);
-    const std::uint32_t moves = std::max(group[edge.from], group[edge.to]);
-    if (stays == moves) continue;
-    Pose motion = poses[edge.from] * edge.T_from_to * poses[edge.to].inverse();
-    if (group[edge.from] == moves) motion = motion.inverse();
-    for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      if (group[i] != moves) continue;
-      poses[i] = motion * poses[i];
-      group[i] = stays;
-    }
-  }
-  return group;
-}
-
-std::vector<GraphEdge> PoseGraph::edges() const {
-  std::vector<double> drift(nodes_.size(), 1.0);
-  for (const Loop& loop : loops_) {
-    for (std::size_t i = loop.graph_edge.from + 1; i <= loop.graph_edge.to; ++i) {
-      drift[i] = std::max(drift[i], loop.drift_factor);
-    }
-  }
-  std::vector<GraphEdge> edges;
-  for (std::size_t i = 1; i < nodes_.size(); ++i) {
-    if (nodes_[i - 1].segment != nodes_[i].segment) continue;
-    edges.push_back({i - 1, i, nodes_[i - 1].T_odom_sensor.inverse() * nodes_[i].T_odom_sensor,
-                     whitening_of(drift[i] * step_covariances_[i]), false});
-  }
-  for (const Loop& loop : loops_) edges.push_back(loop.graph_edge);
-  return edges;
-}
-
-void PoseGraph::solve() {
-  const std::vector<std::uint32_t> group = join_groups(poses_);
-  // The first node of each group holds it.
-  std::set<std::uint32_t> held;
-  std::vector<bool> fixed;
-  fixed.reserve(group.size());
-  for (const std::uint32_t g : group) fixed.push_back(held.insert(g).second);
-  solve_pose_graph(poses_, fixed, edges());
-}
-
-std::vector<LoopEdge> PoseGraph::optimize() {
-  const std::vector<Pose> before = poses_;
-  const auto misfit_of = [&](const Loop& loop) { return chi_squared(loop.graph_edge, poses_); };
-  const auto is_settled = [](const Loop& loop) { return loop.settled; };
-  std::vector<LoopEdge> refused;
-  bool settled = std::ranges::all_of(loops_, is_settled);
-  while (!settled) {
-    poses_ = before;
-    solve();
-    const auto worst = std::ranges::max_element(loops_, {}, misfit_of);
-    if (worst == loops_.end() || misfit_of(*worst) <= kLargestChiSquared) break;
-    const bool was_settled = worst->settled;
-    refused.push_back(worst->edge);
-    loops_.erase(worst);
-    if (was_settled) {
-      for (Loop& loop : loops_) loop.settled = false;
-    }
-    // What the poses were found with is all that is left.
-    settled = !was_settled && std::ranges::all_of(loops_, is_settled);
-    if (settled) poses_ = before;
-  }
-  for (Loop& loop : loops_) loop.settled = true;
-  return refused;
 }
 
 }  // namespace glint::slam

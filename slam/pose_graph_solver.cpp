@@ -6,7 +6,9 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <array>
+
+#include "slam/gravity_terms.hpp"
+#include "slam/pose_block.hpp"
 
 namespace glint::slam {
 namespace {
@@ -14,26 +16,11 @@ namespace {
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Jacobian = Eigen::Matrix<double, 6, 7, Eigen::RowMajor>;
 
-// A pose as Ceres holds it: qx qy qz qw x y z.
-using Block = std::array<double, 7>;
-
 // Phi of the last round, and by what it falls in each.
 constexpr double kFinalScale = 1.0;
 constexpr double kScaleStep = 0.2;
 constexpr int kRoundIterations = 12;
 constexpr int kFinalIterations = 20;
-
-Pose pose_of(const double* block) {
-  return {Eigen::Map<const Eigen::Quaterniond>(block),
-          Eigen::Map<const Eigen::Vector3d>(block + 4)};
-}
-
-void write(const Pose& pose, double* block) {
-  Eigen::Map<Eigen::Quaterniond> rotation(block);
-  rotation = pose.rotation;
-  Eigen::Map<Eigen::Vector3d> translation_m(block + 4);
-  translation_m = pose.translation_m;
-}
 
 Twist misfit(const Pose& T_from_to, const Pose& from, const Pose& to) {
   return se3_log(T_from_to.inverse() * (from.inverse() * to));
@@ -61,7 +48,7 @@ class PoseManifold : public ceres::Manifold {
   int AmbientSize() const override { return 7; }
   int TangentSize() const override { return 6; }
   bool Plus(const double* x, const double* delta, double* sum) const override {
-    write(pose_of(x) * se3_exp(Eigen::Map<const Twist>(delta)), sum);
+    write_block(pose_of(x) * se3_exp(Eigen::Map<const Twist>(delta)), sum);
     return true;
   }
   bool PlusJacobian(const double*, double* jacobian) const override {
@@ -132,7 +119,7 @@ class ScalingLoss : public ceres::LossFunction {
 };
 
 // chi^2 of the robust edge that fits worst.
-double worst_robust(std::span<const GraphEdge> edges, const std::vector<Block>& blocks) {
+double worst_robust(std::span<const GraphEdge> edges, const std::vector<PoseBlock>& blocks) {
   double worst = 0.0;
   for (const GraphEdge& edge : edges) {
     if (!edge.robust) continue;
@@ -168,17 +155,18 @@ double chi_squared(const GraphEdge& edge, std::span<const Pose> poses) {
 }
 
 void solve_pose_graph(std::span<Pose> poses, const std::vector<bool>& fixed,
-                      std::span<const GraphEdge> edges) {
+                      std::span<const GraphEdge> edges, std::span<const GravityFactor> gravity) {
   PoseManifold manifold;
   ScalingLoss loss;
+  GravityTerms gravity_terms(gravity, poses);
   ceres::Problem::Options ownership;
   ownership.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem problem(ownership);
 
-  std::vector<Block> blocks(poses.size());
+  std::vector<PoseBlock> blocks(poses.size());
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    write(poses[i], blocks[i].data());
+    write_block(poses[i], blocks[i].data());
     problem.AddParameterBlock(blocks[i].data(), 7, &manifold);
     if (fixed[i]) problem.SetParameterBlockConstant(blocks[i].data());
   }
@@ -186,6 +174,8 @@ void solve_pose_graph(std::span<Pose> poses, const std::vector<bool>& fixed,
     problem.AddResidualBlock(new EdgeFactor(edge), edge.robust ? &loss : nullptr,
                              blocks[edge.from].data(), blocks[edge.to].data());
   }
+
+  gravity_terms.add_to(problem, blocks);
 
   ceres::Solver::Options options = solver_options();
   ceres::Solver::Summary summary;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "driver/core/pose.hpp"
+#include "slam/gravity_factor.hpp"
 
 namespace glint::slam {
 
@@ -28,12 +29,17 @@ Eigen::Matrix<double, 6, 6> whitening_of(const Eigen::Matrix<double, 6, 6>& cova
 /// The squared length of the whitened misfit log(T_from_to^-1 T_map_from^-1 T_map_to), 6 degrees of
 /// freedom.
 double chi_squared(const GraphEdge& edge, std::span<const Pose> poses);
+/// 95 % of right edges stay below.
+constexpr double kLargestChiSquared = 12.6;
 
 /// Moves the poses that are not fixed to the least sum of squared misfits. Robust edges are scaled
 /// dynamically [Agarwal 2013, "Robust map optimization using dynamic covariance scaling", eq. 15]
 /// with Phi falling to 1 from where all of them count in full, so that a far-off but right edge is
-/// not given up for its distance [Yang 2020, "Graduated non-convexity"]. Deterministic; one thread.
+/// not given up for its distance [Yang 2020, "Graduated non-convexity"]. What nodes felt of gravity
+/// holds their roll and pitch; each group's up and the accelerometer's bias are unknowns, too.
+/// Deterministic; one thread.
 void solve_pose_graph(std::span<Pose> poses, const std::vector<bool>& fixed,
-                      std::span<const GraphEdge> edges);
+                      std::span<const GraphEdge> edges,
+                      std::span<const GravityFactor> gravity = {});
 
 }  // namespace glint::slam

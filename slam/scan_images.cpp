@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "driver/core/destagger.hpp"
+#include "slam/image_filter.hpp"
 
 namespace glint::slam {
 namespace {
@@ -33,7 +34,10 @@ ImageFormer::ImageFormer(const SensorInfo& info, const SlamConfig& config)
     : shift_(info.pixel_shift_by_row),
       min_range_mm_(static_cast<std::uint32_t>(std::lround(config.min_range_m * 1000.0))),
       histogram_(65536),
-      scaled_(65536) {}
+      scaled_(65536),
+      filter_(config.image_filter ? std::make_unique<ImageFilter>(info) : nullptr) {}
+
+ImageFormer::~ImageFormer() = default;
 
 void ImageFormer::form(const LidarScan& scan, ScanImages& images) {
   const Image<std::uint16_t>& channel = scan.signal.empty() ? scan.reflectivity : scan.signal;
@@ -47,6 +51,7 @@ void ImageFormer::form(const LidarScan& scan, ScanImages& images) {
   if (images.range_mm.rows != scan.range_mm.rows || images.range_mm.cols != scan.range_mm.cols) {
     images.range_mm = Image<std::uint32_t>(scan.range_mm.rows, scan.range_mm.cols);
     images.intensity_u8 = Image<std::uint8_t>(scan.range_mm.rows, scan.range_mm.cols);
+    images.brightness = images.intensity_u8;
   }
   destagger<std::uint32_t>(scan.range_mm, shift_, images.range_mm);
   for (auto& range_mm : images.range_mm.data) {
@@ -56,6 +61,11 @@ void ImageFormer::form(const LidarScan& scan, ScanImages& images) {
   for (std::size_t i = 0; i < images.intensity_u8.data.size(); ++i) {
     images.intensity_u8.data[i] =
         images.range_mm.data[i] > 0 ? scaled_[images.intensity.data[i]] : 0;
+  }
+  if (filter_ != nullptr) {
+    filter_->apply(images.intensity, images.range_mm, images.brightness);
+  } else {
+    images.brightness.data = images.intensity_u8.data;
   }
 }
 

@@ -68,6 +68,20 @@ TEST_F(ImageFormerTest, NoReturnAndTheRobotItselfAreBlack) {
   EXPECT_GT(images_.intensity_u8(0, 9), 0);
 }
 
+TEST_F(ImageFormerTest, FeaturesSeeTheFilteredImageOrWhatWasMeasured) {
+  config_.image_filter = false;
+  ImageFormer(info_, config_).form(scan_, images_);
+  EXPECT_EQ(images_.brightness.data, images_.intensity_u8.data);
+  const auto measured = images_.intensity_u8;
+  config_.image_filter = true;
+  ImageFormer(info_, config_).form(scan_, images_);
+  EXPECT_EQ(images_.intensity_u8.data, measured.data);
+  EXPECT_NE(images_.brightness.data, measured.data);
+  scan_.range_mm(0, 7) = 0;
+  ImageFormer(info_, config_).form(scan_, images_);
+  EXPECT_EQ(images_.brightness(0, 7), 128);
+}
+
 TEST_F(ImageFormerTest, ReflectivityStandsInWhereThereIsNoSignal) {
   info_.profile = LidarProfile::kRng15Rfl8Nir8;
   LidarScan scan{PacketFormat(info_)};

@@ -13,22 +13,36 @@ const std::vector<PointTerm>& SlidingWindow::associate(const Features& current,
   for (const Match& match : front_end_matches) {
     const auto c = static_cast<std::size_t>(match.current);
     const Eigen::Vector3d here_m = T_odom_scan * current.points_m[c];
+    double weights = 0.0;
+    Eigen::Vector3d sum_m = Eigen::Vector3d::Zero();
     for (const Frame& frame : frames_) {
-      // Position first: it is cheap and leaves few to compare.
-      int best_bits = options_.max_hamming_bits + 1;
-      std::size_t best = 0;
-      for (const std::size_t i : near(frame, here_m)) {
-        const int bits = hamming_distance(frame.descriptors[i], current.descriptors[c]);
-        if (bits >= best_bits) continue;
-        best_bits = bits;
-        best = i;
-      }
-      if (best_bits > options_.max_hamming_bits) continue;
-      const double score = match_score(best_bits);
-      terms_.push_back({current.points_m[c], frame.fixed_m[best], score * score});
+      Eigen::Vector3d fixed_m = Eigen::Vector3d::Zero();
+      const double weight = look_for(current.descriptors[c], here_m, frame, fixed_m);
+      if (weight <= 0.0) continue;
+      if (!options_.means) terms_.push_back({current.points_m[c], fixed_m, weight});
+      weights += weight;
+      sum_m += weight * fixed_m;
     }
+    if (!options_.means || weights <= 0.0) continue;
+    // As good as the current scan's half of it, however many frames the other half comes from.
+    terms_.push_back({current.points_m[c], sum_m / weights, weights / (0.5 + 0.5 * weights)});
   }
   return terms_;
+}
+
+double SlidingWindow::look_for(const Descriptor& descriptor, const Eigen::Vector3d& place_m,
+                               const Frame& frame, Eigen::Vector3d& fixed_m) {
+  // Position first: it is cheap and leaves few to compare.
+  int best_bits = options_.max_hamming_bits + 1;
+  for (const std::size_t i : near(frame, place_m)) {
+    const int bits = hamming_distance(frame.descriptors[i], descriptor);
+    if (bits >= best_bits) continue;
+    best_bits = bits;
+    fixed_m = frame.fixed_m[i];
+  }
+  if (best_bits > options_.max_hamming_bits) return 0.0;
+  const double score = match_score(best_bits);
+  return score * score;
 }
 
 // A loop for the compiler to vectorise, then the few that are near.

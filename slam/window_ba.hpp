@@ -8,7 +8,7 @@
 
 #include "driver/core/pose.hpp"
 #include "slam/features.hpp"
-#include "slam/joint_optimizer.hpp"
+#include "slam/joint_terms.hpp"
 #include "slam/matching.hpp"
 
 namespace glint::slam {
@@ -17,6 +17,9 @@ struct WindowOptions {
   int frames = 10;            ///< k of the paper, which gives no number.
   int max_hamming_bits = 64;  ///< Largest distance of two descriptors that may be one point.
   double gate_m = 0.3;        ///< Farther apart in the odometry frame they are not.
+  /// One residual a keypoint, against the mean of where the frames saw it: what is wrong with how
+  /// the current scan sees it counts once, not in each frame's residual.
+  bool means = false;
 };
 
 /// The sliding window of the paper's LiDAR bundle adjustment: the keypoints of the last k frames,
@@ -44,6 +47,9 @@ class SlidingWindow {
     std::vector<float> x_m, y_m, z_m;      ///< The same, for the look for near ones.
   };
 
+  /// The weight of the frame's keypoint that is this one, and where it is; 0 if there is none.
+  double look_for(const Descriptor& descriptor, const Eigen::Vector3d& place_m, const Frame& frame,
+                  Eigen::Vector3d& fixed_m);
   const std::vector<std::size_t>& near(const Frame& frame, const Eigen::Vector3d& place_m);
 
   WindowOptions options_;

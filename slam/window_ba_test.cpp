@@ -49,6 +49,22 @@ TEST(SlidingWindow, WhatIsTooFarOrLooksOtherwiseIsNoPartner) {
   EXPECT_EQ(window.associate(second.features, second.matches, kSecond).size(), 4U);
 }
 
+TEST(SlidingWindow, MeansCountEachKeypointOnce) {
+  WindowOptions options;
+  options.means = true;
+  SlidingWindow window(options);
+  for (const double off_m : {-0.02, 0.0, 0.05}) {
+    Scene seen({});
+    seen.features.points_m[0].z() += off_m;
+    window.push(seen.features, seen.matches, {});
+  }
+  const Scene second(kSecond);
+  const auto& terms = window.associate(second.features, second.matches, kSecond);
+  ASSERT_EQ(terms.size(), 6U);
+  EXPECT_NEAR((terms[0].fixed_m - Eigen::Vector3d(5.0, 0.0, 1.01)).norm(), 0.0, 1e-9);
+  EXPECT_NEAR(terms[0].weight, 1.5, 1e-9) << "two would be the limit, of endlessly many frames";
+}
+
 TEST(SlidingWindow, OnlyMatchedKeypointsTakePart) {
   SlidingWindow window({});
   Scene first({});

@@ -16,6 +16,7 @@
 #include "daemon/cli/ply_writer.hpp"
 #include "daemon/cli/replay_run.hpp"
 #include "daemon/cli/report.hpp"
+#include "daemon/cli/scan_table.hpp"
 #include "daemon/cli/text_file.hpp"
 #include "daemon/cli/trajectory_error.hpp"
 #include "daemon/cli/trajectory_writer.hpp"
@@ -74,6 +75,7 @@ bool has_pose(const slam::OdometryEstimate& estimate) {
 struct Totals {
   double duration_s = 0.0;
   double lost_s = 0.0;
+  double degenerate_s = 0.0;  // Where an axis was left to the motion before.
   double completeness_mean = 0.0;
   std::size_t poses = 0;
   double path_m = 0.0;
@@ -93,6 +95,7 @@ Totals totals_of(const ReplayResult& result, const SensorInfo& info) {
     totals.matches_mean += estimate.matches / scans;
     totals.inliers_mean += estimate.inliers / scans;
     if (estimate.state == slam::TrackingState::kLost) totals.lost_s += period_s;
+    if (estimate.weak_axes.any_critical()) totals.degenerate_s += period_s;
     if (!has_pose(estimate)) continue;
     if (last != nullptr && last->segment == estimate.segment) {
       totals.path_m +=
@@ -132,7 +135,7 @@ nlohmann::ordered_json summary_of(const ReplayResult& result, const SensorInfo& 
       {"loops_accepted", result.loops_accepted},
       {"loops_rejected", result.loops_rejected},
       {"map_epoch", result.correction.epoch},
-      {"degenerate_s", 0.0},
+      {"degenerate_s", totals.degenerate_s},
       {"lost_s", totals.lost_s},
       {"interrupted", result.interrupted},
       {"peak_rss_mb", peak_rss_mb()}};
@@ -253,6 +256,7 @@ void run(const ReplayCommand& command) {
   const Trajectories trajectories = trajectories_of(result);
   const std::string comparison = compare_with_truth(command.truth, trajectories, summary);
   write_trajectories(command.out, trajectories);
+  write_scan_table(command.out / "scans.csv", result.estimates);
   write_ply(command.out / "map.ply", map_points(*result.map));
   write_text_file(command.out / "summary.json", summary.dump(2) + "\n");
   write_report(command.out / "report.html",

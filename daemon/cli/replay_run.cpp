@@ -3,6 +3,7 @@
 #include "daemon/cli/replay_run.hpp"
 
 #include "daemon/steady_clock.hpp"
+#include "driver/core/imu_packet.hpp"
 #include "slam/frontend.hpp"
 
 namespace glint::cli {
@@ -18,6 +19,7 @@ class Replay {
   Replay(const SensorInfo& info, const ReplayOptions& options)
       : options_(options),
         clock_(daemon::stage_clock()),
+        imu_format_(info),
         assembler_(info),
         frontend_(info, options.slam, clock_, options.R_base_sensor),
         backend_(options.slam, options.session_file, clock_, options.loops) {
@@ -59,6 +61,10 @@ class Replay {
     const slam::StageTimer timer(clock_, decode_times_, slam::Stage::kDecode);
     // Whatever it is, the assembler counts it.
     static_cast<void>(assembler_.push(packet.bytes));
+    if (packet.bytes.size() != imu_format_.packet_bytes) return;
+    imu_samples_.clear();
+    if (!parse_imu_packet(imu_format_, packet.bytes, imu_samples_)) return;
+    for (const ImuSample& sample : imu_samples_) frontend_.add_imu(sample);
   }
 
   void take_loops() {
@@ -98,6 +104,8 @@ class Replay {
 
   const ReplayOptions& options_;
   const Clock clock_;
+  const ImuPacketFormat imu_format_;
+  std::vector<ImuSample> imu_samples_;
   ScanAssembler assembler_;
   slam::Frontend frontend_;
   slam::Backend backend_;

@@ -48,7 +48,7 @@ std::size_t add_images(const CaptureInput& input, const slam::SlamConfig& config
     // All of them, for the brightness is followed from scan to scan.
     former.form(*scan, scan_images);
     if (scan_index % every != 0 || scan->completeness() < config.min_completeness) continue;
-    extractor.extract(*scan, scan_images, features);
+    extractor.extract(scan_images, features);
     images.push_back(features.descriptors);
   }
   print_notices(source->notices());

@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace glint::daemon {
@@ -21,6 +22,11 @@ struct Finding {
   std::string what;  ///< One sentence.
   std::string mend;  ///< The line that mends it: a command or a setting; empty when it is OK.
 };
+
+/// Nothing to mend.
+inline Finding ok(std::string step, std::string what) {
+  return {FindingLevel::kOk, std::move(step), std::move(what), ""};
+}
 
 using Findings = std::vector<Finding>;
 

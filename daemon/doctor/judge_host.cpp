@@ -17,10 +17,6 @@ namespace {
 constexpr double kGravityTolerance_mps2 = 0.5;
 constexpr double kMountTolerance_deg = 10.0;
 
-Finding ok(std::string step, std::string what) {
-  return {FindingLevel::kOk, std::move(step), std::move(what), {}};
-}
-
 /// What was added during the look; null when it cannot be told.
 std::optional<std::uint64_t> growth(const std::optional<std::uint64_t>& before,
                                     const std::optional<std::uint64_t>& after) {

@@ -11,10 +11,6 @@
 namespace glint::daemon {
 namespace {
 
-Finding ok(std::string step, std::string what) {
-  return {FindingLevel::kOk, std::move(step), std::move(what), {}};
-}
-
 Finding judge_status(const SensorFacts& sensor) {
   if (sensor.status == "RUNNING") return ok("status", "the sensor is RUNNING");
   if (sensor.status == "STANDBY" || sensor.operating_mode == "STANDBY") {

@@ -19,7 +19,7 @@
 namespace glint::daemon {
 namespace {
 
-struct AddressListDeleter {
+struct RouteListDeleter {
   void operator()(addrinfo* list) const { freeaddrinfo(list); }
 };
 struct InterfaceListDeleter {
@@ -66,7 +66,7 @@ RouteLookup look_up_route(const std::string& host) {
   if (error != 0) {
     return {std::nullopt, fmt::format("the name {} has no address: {}", host, gai_strerror(error))};
   }
-  const std::unique_ptr<addrinfo, AddressListDeleter> list(found);
+  const std::unique_ptr<addrinfo, RouteListDeleter> list(found);
   const int udp = socket(list->ai_family, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   // A connected UDP socket has the route's local address; nothing is sent.
   sockaddr_storage local{};

@@ -21,4 +21,11 @@ class MetadataError : public InputError {
   using InputError::InputError;
 };
 
+/// A network address that is written wrongly, or of the wrong kind: waiting will not make it right,
+/// as it may one of an interface that is not up yet.
+class AddressError : public InputError {
+ public:
+  using InputError::InputError;
+};
+
 }  // namespace glint

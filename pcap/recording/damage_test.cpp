@@ -40,7 +40,7 @@ struct Kind {
   friend std::ostream& operator<<(std::ostream& out, const Kind& kind) { return out << kind.name; }
 };
 
-Buffer sqlite(const std::vector<TestMessage>& messages) {
+Buffer sqlite_bytes(const std::vector<TestMessage>& messages) {
   const glint::test::TempDir dir;
   test::write_sqlite(dir / "x", messages);
   return test::load_file(dir / "x");
@@ -108,24 +108,23 @@ TEST_P(Damaged, FuzzEntryReturnsFromAnything) {
   fuzz_recording(bytes);
 }
 
-Kind ros1(const std::string& name, const WriteOptions& options) {
+Kind ros1_kind(const std::string& name, const WriteOptions& options) {
   return {"Ros1" + name, [options](const auto& m) { return test::ros1_bag(m, options); }};
 }
-Kind mcap(const std::string& name, const WriteOptions& options) {
+Kind mcap_kind(const std::string& name, const WriteOptions& options) {
   return {"Mcap" + name, [options](const auto& m) { return test::mcap(m, options); }};
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Formats, Damaged,
-    ::testing::Values(ros1("", {}), ros1("Bzip2", {.compression = Compression::kBzip2}),
-                      ros1("Lz4", {.compression = Compression::kLz4}), mcap("", {}),
-                      mcap("Lz4", {.compression = Compression::kLz4}),
-                      mcap("Zstd", {.compression = Compression::kZstd}),
-                      mcap("Unchunked", {.messages_per_chunk = 0}), Kind{"Sqlite", sqlite},
-                      Kind{"Zstd",
-                           [](const auto& m) {
-                             return test::compress(Compression::kZstd, test::mcap(m));
-                           }}),
+    ::testing::Values(
+        ros1_kind("", {}), ros1_kind("Bzip2", {.compression = Compression::kBzip2}),
+        ros1_kind("Lz4", {.compression = Compression::kLz4}), mcap_kind("", {}),
+        mcap_kind("Lz4", {.compression = Compression::kLz4}),
+        mcap_kind("Zstd", {.compression = Compression::kZstd}),
+        mcap_kind("Unchunked", {.messages_per_chunk = 0}), Kind{"Sqlite", sqlite_bytes},
+        Kind{"Zstd",
+             [](const auto& m) { return test::compress(Compression::kZstd, test::mcap(m)); }}),
     [](const auto& test) { return test.param.name; });
 
 class Damage : public Damaged {};
@@ -188,7 +187,7 @@ TEST_F(Damage, AllChunksTogetherMayUnpackToAboutAThousandTimesTheirSize) {
   std::uint64_t unpacked = 0;
   for (int i = 0; i < 30; ++i)
     unpacked += inflater.inflate(Compression::kZstd, packed).bytes.size();
-  EXPECT_LE(unpacked, (1ULL << 30U) + 1000 * 80 * packed.size());
+  EXPECT_LE(unpacked, (1ULL << 30U) + std::size_t{80'000} * packed.size());
   EXPECT_GE(unpacked, 1ULL << 30U);
   EXPECT_FALSE(inflater.inflate(Compression::kZstd, packed).whole);
 }
@@ -207,7 +206,7 @@ TEST_F(Damage, SizesThatLieTakeNoMemory) {
 
 TEST_F(Damage, DatabaseOfAnotherPurposeOrWithAViewInPlaceOfATableIsRefused) {
   std::string problem;
-  Buffer bytes = sqlite(random_packets(3));
+  Buffer bytes = sqlite_bytes(random_packets(3));
   const std::string text = test::to_string(bytes);
   const std::string name = "messagesmessages";
   ASSERT_NE(text.find(name), std::string::npos);
@@ -216,18 +215,44 @@ TEST_F(Damage, DatabaseOfAnotherPurposeOrWithAViewInPlaceOfATableIsRefused) {
   EXPECT_THAT(problem, HasSubstr("no tables of topics and messages"));
 }
 
-TEST_F(Damage, OsfThatIsDamagedGivesNoMetadataAndNoCrash) {
-  const Buffer whole = test::osf("{\"prod_line\": \"OS-1-64\"}");
+TEST_F(Damage, OsfThatIsCutShortOrDamagedGivesTheRightMetadataOrNone) {
+  const std::string json = "{\"prod_line\": \"OS-1-64\"}";
+  const Buffer whole = test::osf({json, "{}"});
   std::mt19937 random(7);
+  const auto metadata = [this](const Buffer& bytes) {
+    test::save(dir_ / "x.osf", bytes);
+    const std::optional<OsfContents> contents = read_osf(dir_ / "x.osf");
+    return contents ? contents->sensor : std::nullopt;
+  };
+  EXPECT_EQ(metadata(whole), json);
   for (std::size_t size = 0; size < whole.size(); size += 3) {
-    test::save(dir_ / "x.osf", Buffer(whole.begin(), whole.begin() + static_cast<long>(size)));
-    find_osf_metadata(dir_ / "x.osf");
+    const Buffer part(whole.begin(), whole.begin() + static_cast<long>(size));
+    EXPECT_EQ(metadata(part), std::nullopt) << size;
   }
   for (int i = 0; i < 400; ++i) {
     Buffer bytes = whole;
     bytes[random() % bytes.size()] = static_cast<std::byte>(random());
-    test::save(dir_ / "x.osf", bytes);
-    find_osf_metadata(dir_ / "x.osf");
+    EXPECT_EQ(metadata(bytes).value_or(json), json) << i;
+  }
+}
+
+TEST_F(Damage, OsfMetadataOfAnyBytesIsReadWithinBounds) {
+  const Buffer whole = test::osf_metadata({"{\"prod_line\": \"OS-1-64\"}", "{}"});
+  std::mt19937 random(8);
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    // With its size put right, so that the end of the bytes is met further in.
+    Buffer part(whole.begin(), whole.begin() + static_cast<long>(size));
+    if (size >= 4) {
+      const Buffer prefix =
+          test::ByteWriter().integer(static_cast<std::uint32_t>(size - 4)).buffer();
+      std::copy(prefix.begin(), prefix.end(), part.begin());
+    }
+    parse_osf_metadata(part);
+  }
+  for (int i = 0; i < 4000; ++i) {
+    Buffer bytes = whole;
+    for (int n = 0; n < 3; ++n) bytes[random() % bytes.size()] = static_cast<std::byte>(random());
+    parse_osf_metadata(bytes);
   }
 }
 

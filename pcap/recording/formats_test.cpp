@@ -7,6 +7,8 @@
 #include <random>
 
 #include "driver/core/error.hpp"
+#include "pcap/recording/crc32.hpp"
+#include "pcap/recording/osf_file.hpp"
 #include "pcap/recording/recording_files.hpp"
 #include "pcap/recording/recording_format.hpp"
 #include "pcap/recording/recording_metadata.hpp"
@@ -18,6 +20,8 @@ namespace {
 
 using test::TestMessage;
 using test::WriteOptions;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
@@ -187,11 +191,46 @@ TEST_F(Formats, PartThatIsDamagedIsToldOfAndTheOthersAreRead) {
   EXPECT_THAT(problem, HasSubstr("bag_0.db3"));
 }
 
-TEST_F(Formats, OsfGivesItsMetadataAndSaysThatItHoldsNoPackets) {
-  test::save(dir_ / "x.osf", test::osf(R"({"prod_line": "OS-1-64"})"));
+TEST_F(Formats, OsfGivesItsFirstSensorsMetadata) {
+  test::save(dir_ / "x.osf",
+             test::osf({R"({"prod_line": "OS-1-64"})", R"({"prod_line": "OS-0"})"}));
   EXPECT_EQ(recording_format(dir_ / "x.osf"), RecordingFormat::kOsf);
   EXPECT_EQ(find_metadata(dir_ / "x.osf"), R"({"prod_line": "OS-1-64"})");
-  EXPECT_THAT(complaint(dir_ / "x.osf"), HasSubstr("no packets"));
+}
+
+TEST_F(Formats, OsfSaysThatItHoldsNoPacketsWhatItHoldsAndTheWayOut) {
+  test::save(dir_ / "x.osf", test::osf({"{}", "{}"}));
+  EXPECT_THAT(
+      complaint(dir_ / "x.osf"),
+      AllOf(HasSubstr("no packets"), HasSubstr("2 LidarScanStream, 2 LidarSensor, 1 StreamingInfo"),
+            HasSubstr("ouster-cli source")));
+  test::save(dir_ / "packed", test::compress(Compression::kZstd, test::osf({"{}"})));
+  EXPECT_THAT(complaint(dir_ / "packed"), HasSubstr("1 LidarSensor"));
+}
+
+/// To be asked for its metadata would lead a user astray.
+TEST_F(Formats, OsfWithoutMetadataIsRefusedAtOnce) {
+  test::save(dir_ / "unfinished.osf", test::osf({"{}"}, false));
+  test::save(dir_ / "no_sensor.osf", test::osf({}));
+  for (const char* name : {"unfinished.osf", "no_sensor.osf"}) {
+    EXPECT_EQ(recording_format(dir_ / name), RecordingFormat::kOsf);
+    EXPECT_THROW(find_metadata(dir_ / name), InputError);
+  }
+  EXPECT_THAT(complaint(dir_ / "unfinished.osf"), HasSubstr("never finished"));
+}
+
+TEST_F(Formats, OsfKindsOfUnusualLettersAreNotRepeated) {
+  test::Buffer block = test::osf_metadata({"{}"});
+  const std::size_t at = test::to_string(block).find("LidarScanStream");
+  block[at] = std::byte{0x1B};
+  const std::optional<OsfContents> contents = parse_osf_metadata(block);
+  ASSERT_TRUE(contents);
+  EXPECT_THAT(contents->kinds, ElementsAre("StreamingInfo", "LidarSensor"));
+}
+
+TEST(Crc32, IsThatOfItsCatalogue) {
+  EXPECT_EQ(crc32({}), 0U);
+  EXPECT_EQ(crc32(test::to_bytes("123456789")), 0xCBF4'3926U);
 }
 
 TEST_F(Formats, WhatIsNoRecordingIsRefusedWithTheReason) {

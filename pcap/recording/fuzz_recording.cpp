@@ -8,12 +8,15 @@
 #include "driver/core/error.hpp"
 #include "pcap/recording/message_decoder.hpp"
 #include "pcap/recording/message_files.hpp"
+#include "pcap/recording/osf_file.hpp"
 #include "pcap/recording/recording_metadata.hpp"
 #include "pcap/recording/unpacked_file.hpp"
 
 namespace glint::recording {
 
 void fuzz_recording(ByteSpan contents) {
+  // In a file, a checksum lets little of what is damaged pass.
+  static_cast<void>(parse_osf_metadata(contents));
   const TemporaryFile file;
   const std::string_view text = as_text(contents);
   std::ofstream(file.path(), std::ios::binary)

@@ -19,8 +19,6 @@ constexpr std::uint8_t kOpMessage = 0x05;
 constexpr std::uint8_t kOpChunk = 0x06;
 constexpr std::uint8_t kOpDataEnd = 0x0F;
 
-constexpr std::size_t kMaxNameBytes = 1024;
-
 Encoding encoding_named(std::string_view name) {
   if (name == "cdr") return Encoding::kCdr;
   return name == "ros1" ? Encoding::kRos1 : Encoding::kOther;

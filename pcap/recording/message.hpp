@@ -2,6 +2,7 @@
 // Copyright 2026 The Glint Authors
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -16,6 +17,9 @@ enum class Encoding {
   kCdr,    ///< ROS 2.
   kOther,  ///< None that is understood here.
 };
+
+/// Longer names of topics and types are damage.
+constexpr std::size_t kMaxNameBytes = 1024;
 
 /// One recorded message. Non-owning: valid until the reader's next call.
 struct Message {

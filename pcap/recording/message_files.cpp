@@ -10,6 +10,7 @@
 
 #include "driver/core/error.hpp"
 #include "pcap/recording/mcap_reader.hpp"
+#include "pcap/recording/osf_file.hpp"
 #include "pcap/recording/recording_files.hpp"
 #include "pcap/recording/ros1_bag_reader.hpp"
 #include "pcap/recording/sqlite_bag_reader.hpp"
@@ -30,10 +31,7 @@ std::unique_ptr<MessageReader> open_plain(const fs::path& file, const fs::path& 
     case RecordingFormat::kMcap:
       return std::make_unique<McapReader>(file);
     case RecordingFormat::kOsf:
-      throw InputError(
-          fmt::format("{} is an OSF file, which holds scans that were decoded already and no "
-                      "packets; give the pcap or bag that it was made from.",
-                      name.string()));
+      throw InputError(osf_refusal(file, name));
     case RecordingFormat::kZstd:
     case RecordingFormat::kNone:
       break;

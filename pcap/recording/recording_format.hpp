@@ -13,7 +13,7 @@ enum class RecordingFormat {
   kRos1,    ///< ROS 1 bag.
   kSqlite,  ///< ROS 2 bag stored in SQLite, or any other SQLite database.
   kMcap,    ///< MCAP file, a ROS 2 bag or not.
-  kOsf,     ///< Open Sensor Format: scans and metadata, but no packets.
+  kOsf,     ///< Open Sensor Format: decoded scans and metadata, but no packets.
   kZstd,    ///< Any of these, packed whole with zstd.
 };
 

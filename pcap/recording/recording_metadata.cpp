@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 
+#include "driver/core/error.hpp"
 #include "pcap/recording/message_files.hpp"
 #include "pcap/recording/osf_file.hpp"
 
@@ -35,7 +37,12 @@ void add_metadata(const Message& message, MessageDecoder& decoder,
 
 std::optional<std::string> find_metadata(const std::filesystem::path& path,
                                          std::string_view prefix) {
-  if (recording_format(path) == RecordingFormat::kOsf) return find_osf_metadata(path);
+  if (recording_format(path) == RecordingFormat::kOsf) {
+    std::optional<OsfContents> contents = read_osf(path);
+    // To ask the user for metadata would be vain: there are no packets to use them with.
+    if (!contents || !contents->sensor) throw InputError(osf_refusal(path, path));
+    return std::move(contents->sensor);
+  }
   const std::unique_ptr<MessageReader> reader = open_messages(path);
   MessageDecoder decoder;
   std::vector<RecordedMetadata> found;

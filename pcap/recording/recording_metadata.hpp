@@ -27,7 +27,7 @@ void add_metadata(const Message& message, MessageDecoder& decoder,
 /// The sensor metadata, as JSON, found inside a recording: the first of topics that begin with
 /// `prefix`, or an OSF file's. Null if there is none, as in bags before 2021. Drivers publish it as
 /// they start, so it is looked for only some ten seconds into a sensor's packets.
-/// @throws InputError if the recording cannot be read.
+/// @throws InputError if the recording cannot be read, or is an OSF file without sensor metadata.
 std::optional<std::string> find_metadata(const std::filesystem::path& path,
                                          std::string_view prefix = {});
 

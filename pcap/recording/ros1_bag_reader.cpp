@@ -22,7 +22,6 @@ constexpr std::uint8_t kOpConnection = 0x07;
 /// Headers hold a few names and numbers; those of connections, the topic.
 constexpr std::uint32_t kMaxHeaderBytes = 1U << 16U;
 constexpr std::size_t kMaxConnections = 1U << 16U;
-constexpr std::size_t kMaxNameBytes = 1024;
 
 /// The number that a field's bytes spell; 0 if they are too few.
 template <class T>

@@ -19,7 +19,6 @@ namespace {
 /// Larger than any packet and any metadata.
 constexpr int kMaxMessageBytes = 16 << 20;
 constexpr std::size_t kMaxTopics = 4096;
-constexpr std::size_t kMaxNameBytes = 1024;
 
 struct Close {
   void operator()(sqlite3* database) const { sqlite3_close(database); }

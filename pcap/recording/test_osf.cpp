@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright 2026 The Glint Authors
+#include "pcap/recording/crc32.hpp"
 #include "pcap/recording/test_recording.hpp"
 
 namespace glint::recording::test {
@@ -63,30 +64,39 @@ Buffer header(std::uint64_t metadata_at) {
 
 }  // namespace
 
-Buffer osf(std::string_view metadata) {
+Buffer osf_metadata(const std::vector<std::string>& sensors) {
   std::size_t at = 0;
-  const Buffer sensor_table = table(1, {{0, vector(to_bytes(metadata))}}, at);
-  const Buffer sensor = sized("oLS_", sensor_table, at);
-
   const auto entry = [&](std::string_view type, const Buffer& buffer) {
     return table(3, {{1, vector(to_bytes(type))}, {2, vector(buffer)}}, at);
   };
-  const Buffer first = entry("ouster/v1/streaming/StreamingInfo", Buffer(8));
-  const Buffer second = entry("ouster/v1/os_sensor/LidarSensor", sensor);
-  const Buffer entries = ByteWriter()
-                             .integer(std::uint32_t{2})
-                             .integer(static_cast<std::uint32_t>(8 + at))
-                             .integer(static_cast<std::uint32_t>(4 + first.size() + at))
-                             .bytes(first)
-                             .bytes(second)
-                             .buffer();
-  const Buffer root = table(5, {{4, entries}}, at);
-  const std::uint64_t metadata_at = header(0).size() + 4;
+  std::vector<Buffer> entries{entry("ouster/v1/streaming/StreamingInfo", Buffer(8))};
+  for (const std::string& metadata : sensors) {
+    const Buffer sensor = table(1, {{0, vector(to_bytes(metadata))}}, at);
+    entries.push_back(entry("ouster/v1/os_sensor/LidarSensor", sized("oLS_", sensor, at)));
+    entries.push_back(entry("ouster/v1/os_sensor/LidarScanStream", Buffer(8)));
+  }
+  // The number of entries, where each is from the place that says so, and they.
+  ByteWriter list;
+  list.integer(static_cast<std::uint32_t>(entries.size()));
+  std::size_t behind = 4 * entries.size();
+  for (const Buffer& bytes : entries) {
+    list.integer(static_cast<std::uint32_t>(behind + at));
+    behind += bytes.size() - 4;
+  }
+  for (const Buffer& bytes : entries) list.bytes(bytes);
+  const Buffer root = table(5, {{4, list.buffer()}}, at);
+  return sized("OSF#", root, at);
+}
+
+Buffer osf(const std::vector<std::string>& sensors, bool finished) {
+  const auto with_checksum = [](const Buffer& block) {
+    return ByteWriter().bytes(block).integer(crc32(block)).buffer();
+  };
+  const std::uint64_t metadata_at = with_checksum(header(0)).size();
+  if (!finished) return with_checksum(header(0));
   return ByteWriter()
-      .bytes(header(metadata_at))
-      .integer(std::uint32_t{0})  // Checksum.
-      .bytes(sized("OSF#", root, at))
-      .integer(std::uint32_t{0})
+      .bytes(with_checksum(header(metadata_at)))
+      .bytes(with_checksum(osf_metadata(sensors)))
       .buffer();
 }
 

@@ -71,8 +71,11 @@ Buffer mcap(const std::vector<TestMessage>& messages, const WriteOptions& option
 /// Writes a ROS 2 bag's SQLite file.
 void write_sqlite(const std::filesystem::path& file, const std::vector<TestMessage>& messages,
                   const WriteOptions& options = {});
-/// An OSF file of one sensor with this metadata and no scans.
-Buffer osf(std::string_view metadata);
+/// An OSF file's block of metadata, its size in front and without its checksum: sensors with
+/// these metadata, and a stream of scans for each.
+Buffer osf_metadata(const std::vector<std::string>& sensors);
+/// An OSF file of these sensors with empty streams; unfinished, one without its metadata.
+Buffer osf(const std::vector<std::string>& sensors, bool finished = true);
 
 void save(const std::filesystem::path& file, const Buffer& bytes);
 Buffer load_file(const std::filesystem::path& file);

@@ -82,6 +82,7 @@ const std::array kKeys = {
               [](Options& o, const std::string& text) { o.photographs.push_back(load_pgm(text)); }},
     GLINT_NUMBER("range-noise", "Deviation of the range of a strong return, m", double,
                  noise.range_sigma_m),
+    GLINT_NUMBER("traffic", "In the street: times as many moving cars and people", double, traffic),
     GLINT_NUMBER("loss", "Share of datagrams that the network loses, 0 to 1", double, network.loss),
     GLINT_NUMBER("duplicates", "Share of datagrams that arrive twice", double, network.duplicates),
     GLINT_NUMBER("reordering", "Share of datagrams that arrive one to three late", double,

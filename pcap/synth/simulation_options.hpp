@@ -35,6 +35,7 @@ struct SimulationOptions {
   MotionOptions motion{.kind = ""};  ///< No kind: the one that is usual in the world.
   std::filesystem::path trajectory;  ///< A TUM or KITTI file to follow instead.
   std::vector<Photograph> photographs;
+  double traffic = 1.0;  ///< In the street: times as many moving cars and people, 0 to 10.
   SensorOptions sensor;
   NoiseOptions noise;
   ImuNoise imu;

@@ -73,7 +73,7 @@ struct Simulator::Column {
 Simulator::Simulator(const SimulationOptions& options)
     : options_(options),
       info_(make_sensor(options.sensor, options.seed)),
-      world_(make_world({options.world, options.seed, options.photographs})),
+      world_(make_world({options.world, options.seed, options.photographs, options.traffic})),
       motion_(motion_for(options, world_)),
       lut_(info_),
       model_(info_, options.noise, options.seed),

@@ -18,7 +18,7 @@ constexpr float kGate_m = 0.1F;
 constexpr float kGateShare = 0.01F;
 constexpr int kMostBits = 64;
 // Far ones are too coarse to be told apart. The gate there is within the cells searched.
-constexpr float kFarthest_m = 20.0F;
+constexpr float kFarthestAlike_m = 20.0F;
 constexpr float kCell_m = 0.5F;
 // A cube is judged with so many keypoints; it contradicts when this share of the usual number of
 // them, or fewer, is found, and chance would not have it so.
@@ -123,7 +123,7 @@ Comparison compare_places(const Place& known, std::span<const Place> around, con
   for (std::size_t i = 0; i < strong; ++i) {
     const Eigen::Vector3f at_m = (T_known_seen * seen.keypoints_m[i].cast<double>()).cast<float>();
     const float range_m = std::max(at_m.norm(), seen.keypoints_m[i].norm());
-    if (range_m > kFarthest_m || !index.sees(at_m)) continue;
+    if (range_m > kFarthestAlike_m || !index.sees(at_m)) continue;
     const bool found = index.has(at_m, kGate_m + kGateShare * range_m, seen.descriptors[i]);
     for (Cube* cube : {&all, &cubes[voxel_key(at_m, kCube_m)]}) {
       ++cube->keypoints;

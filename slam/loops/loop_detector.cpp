@@ -26,14 +26,25 @@ constexpr std::size_t kMostRegions = 10;
 constexpr std::size_t kMostMatched = 3;
 // Keyframes before and after the older one whose points make the surfaces around it.
 constexpr std::size_t kAround = 5;
+// The same where shape alone speaks for a place, and keyframes before the current one whose points
+// are taken together with its own.
+constexpr std::size_t kShapeAround = 10;
+constexpr std::size_t kShapeBefore = 10;
+// So many times more must bear it out.
+constexpr double kShapeNeeds = 2.0;
 // Keyframes on either side of a place whose keypoints are taken together with its own.
 constexpr std::size_t kBeside = 2;
 // A loop says most of what those just after it would.
 constexpr double kLoopEvery_m = 1.0;
+// What waits longer to be borne out is given up.
+constexpr double kLongestWait_m = 15.0;
 // What odometry may have erred by.
 constexpr double kMostDrift_m = 15.0;
 constexpr double kMostDriftShare = 0.05;
 constexpr double kMostTurn_rad = 0.8;
+// Height errs less, for gravity is seen; other storeys may look alike.
+constexpr double kMostRise_m = 1.25;
+constexpr double kMostRiseShare = 0.005;
 
 Waypoint waypoint(const Place& place) { return {place.segment, place.path_m, place.T_odom_sensor}; }
 
@@ -41,10 +52,12 @@ std::size_t apart(std::size_t a, std::size_t b) { return a > b ? a - b : b - a; 
 
 }  // namespace
 
-LoopDetector::LoopDetector(std::shared_ptr<const Vocabulary> vocabulary)
-    : vocabulary_(std::move(vocabulary)), index_(vocabulary_->word_count()) {}
+LoopDetector::LoopDetector(std::shared_ptr<const Vocabulary> vocabulary, bool density)
+    : vocabulary_(std::move(vocabulary)), index_(vocabulary_->word_count()) {
+  if (density) density_.emplace();
+}
 
-std::optional<LoopEdge> LoopDetector::add(const Keyframe& keyframe) {
+std::vector<LoopEdge> LoopDetector::add(const Keyframe& keyframe) {
   candidates_.clear();
   append(keyframe);
   let_places_age();
@@ -52,6 +65,7 @@ std::optional<LoopEdge> LoopDetector::add(const Keyframe& keyframe) {
   propose(bag);
   index_.add(bag);
   last_bag_ = std::move(bag);
+  if (density_) density_->keep(places_);
   return verify();
 }
 
@@ -107,10 +121,10 @@ int LoopDetector::streak_at(std::size_t entry) const {
   return longest + 1;
 }
 
-std::optional<LoopEdge> LoopDetector::verify() {
+std::vector<LoopEdge> LoopDetector::verify() {
   const double path_m = places_.back().path_m;
   const std::vector<PlacePair>& loops = evidence_.loops();
-  if (!loops.empty() && path_m - loops.back().current.path_m < kLoopEvery_m) return std::nullopt;
+  if (!loops.empty() && path_m - loops.back().current.path_m < kLoopEvery_m) return {};
   judged_.clear();
   for (const Region& region : regions_) {
     if (region.streak < kStreak) continue;
@@ -119,21 +133,56 @@ std::optional<LoopEdge> LoopDetector::verify() {
     candidate.similarity = region.similarity;
     judge(region.best, candidate);
   }
+  if (density_ && std::ranges::none_of(judged_, &Judged::alike)) verify_shape();
   for (const Judged& judged : judged_) {
     if (!judged.alike) evidence_.speak_against(judged.pair);
   }
   std::erase_if(judged_, [](const Judged& judged) { return !judged.alike; });
-  if (judged_.empty()) return std::nullopt;
+  if (judged_.empty()) return {};
   const Judged* const best = choose();
-  if (best == nullptr) return refuse("another place fits as well");
+  if (best == nullptr) {
+    refuse("another place fits as well");
+    return {};
+  }
   evidence_.speak_for(best->pair);
-  if (!evidence_.convincing(best->pair)) return refuse("not yet borne out by other keyframes");
-  if (evidence_.foreseen(best->pair) == false) return refuse("the loop before contradicts it");
+  if (!evidence_.convincing(best->pair, best->by_shape ? kShapeNeeds : 1.0)) {
+    refuse("not yet borne out by other keyframes");
+    wait(*best);
+    return {};
+  }
+  if (evidence_.foreseen(best->pair) == false) {
+    refuse("the loop before contradicts it");
+    return {};
+  }
   refuse("another place goes better with the loop before");
-  candidates_[best->candidate].reason.clear();
-  candidates_[best->candidate].accepted = true;
-  evidence_.believe(best->pair);
-  return best->edge;
+  return accept(*best);
+}
+
+void LoopDetector::wait(const Judged& judged) {
+  const double path_m = judged.pair.current.path_m;
+  std::erase_if(waiting_, [&](const Waiting& before) {
+    return path_m - before.pair.current.path_m > kLongestWait_m;
+  });
+  if (!waiting_.empty() && path_m - waiting_.back().pair.current.path_m < kLoopEvery_m) return;
+  waiting_.push_back({candidates_[judged.candidate], judged.edge, judged.pair});
+}
+
+std::vector<LoopEdge> LoopDetector::accept(const Judged& judged) {
+  const auto say_so = [](LoopCandidate& candidate) {
+    candidate.reason.clear();
+    candidate.accepted = true;
+  };
+  say_so(candidates_[judged.candidate]);
+  evidence_.believe(judged.pair);
+  std::vector<LoopEdge> edges{judged.edge};
+  for (Waiting& before : waiting_) {
+    const double since_m = judged.pair.current.path_m - before.pair.current.path_m;
+    if (since_m > kLongestWait_m || !evidence_.agree(before.pair, judged.pair)) continue;
+    say_so(candidates_.emplace_back(std::move(before.candidate)));
+    edges.push_back(before.edge);
+  }
+  waiting_.clear();
+  return edges;
 }
 
 // The only one, or the only one that the loop before foresaw.
@@ -148,9 +197,8 @@ const LoopDetector::Judged* LoopDetector::choose() const {
   return chosen;
 }
 
-std::optional<LoopEdge> LoopDetector::refuse(const char* reason) {
+void LoopDetector::refuse(const char* reason) {
   for (const Judged& judged : judged_) candidates_[judged.candidate].reason = reason;
-  return std::nullopt;
 }
 
 void LoopDetector::judge(std::size_t entry, LoopCandidate& candidate) {
@@ -169,9 +217,14 @@ void LoopDetector::judge(std::size_t entry, LoopCandidate& candidate) {
   if (!verifier_.registered(older, around(entry, kAround), current, start, candidate, found.edge)) {
     return;
   }
+  compare(entry, found, candidate);
+}
+
+// Once the surfaces fit.
+void LoopDetector::compare(std::size_t entry, Judged& found, LoopCandidate& candidate) {
   found.candidate = candidates_.size() - 1;
   found.pair.T_older_current = found.edge.T_from_to;
-  if (!believable(found.edge, older, current)) {
+  if (!believable(found.edge, places_[entry], places_.back())) {
     candidate.reason = "odometry does not err that far";
     return;
   }
@@ -180,12 +233,44 @@ void LoopDetector::judge(std::size_t entry, LoopCandidate& candidate) {
   judged_.push_back(found);
 }
 
+void LoopDetector::verify_shape() {
+  for (const DensitySearch::Proposal& proposal : density_->propose(places_, aged_)) {
+    judge_shape(proposal, candidates_.emplace_back());
+  }
+}
+
+void LoopDetector::judge_shape(const DensitySearch::Proposal& proposal, LoopCandidate& candidate) {
+  const Place& older = places_[proposal.entry];
+  const Place& current = places_.back();
+  candidate.corners = proposal.corners;
+  Judged found;
+  found.by_shape = true;
+  found.pair = {waypoint(older), waypoint(current), proposal.T_older_current};
+  const auto before = around(places_.size() - 1, kShapeBefore);
+  if (!verifier_.registered_by_shape(older, around(proposal.entry, kShapeAround), current, before,
+                                     proposal.T_older_current, candidate, found.edge)) {
+    return;
+  }
+  found.pair.T_older_current = found.edge.T_from_to;
+  const auto same = [&](const Judged& judged) { return evidence_.agree(judged.pair, found.pair); };
+  if (std::ranges::any_of(judged_, [&](const Judged& j) { return j.by_shape && same(j); })) {
+    candidate.reason = "another keyframe of the same place is more alike";
+    return;
+  }
+  // Few keypoints placed the other one; where the whole map lies, they are better compared.
+  std::erase_if(judged_, same);
+  compare(proposal.entry, found, candidate);
+}
+
 bool LoopDetector::believable(const LoopEdge& edge, const Place& older,
                               const Place& current) const {
   if (older.segment != current.segment) return true;
   const Pose T_older_current = older.T_odom_sensor.inverse() * current.T_odom_sensor;
   const Pose drift = T_older_current.inverse() * edge.T_from_to;
   const double way_m = current.path_m - older.path_m;
+  const double rise_m = (older.T_odom_sensor * edge.T_from_to).translation_m.z() -
+                        current.T_odom_sensor.translation_m.z();
+  if (std::abs(rise_m) > kMostRise_m + kMostRiseShare * way_m) return false;
   // What comes after a wrong turn is off by the turn times the way.
   const double turn_rad = so3_log(drift.rotation).norm();
   return turn_rad < kMostTurn_rad &&
@@ -204,11 +289,7 @@ bool LoopDetector::contradicted(std::size_t entry, const Pose& T_older_current) 
 }
 
 std::span<const Place> LoopDetector::around(std::size_t entry, std::size_t reach) const {
-  std::size_t first = entry - std::min(entry, reach);
-  std::size_t last = std::min(places_.size() - 1, entry + reach);
-  while (places_[first].segment != places_[entry].segment) ++first;
-  while (places_[last].segment != places_[entry].segment) --last;
-  return std::span(places_).subspan(first, last - first + 1);
+  return places_around(places_, entry, reach);
 }
 
 }  // namespace glint::slam

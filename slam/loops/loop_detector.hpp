@@ -10,6 +10,7 @@
 
 #include "slam/keyframe.hpp"
 #include "slam/loop_edge.hpp"
+#include "slam/loops/density_search.hpp"
 #include "slam/loops/loop_evidence.hpp"
 #include "slam/loops/loop_verifier.hpp"
 #include "slam/loops/place.hpp"
@@ -20,18 +21,21 @@ namespace glint::slam {
 
 /// Finds keyframes that see a place again, by what it looks like: bags of visual words propose
 /// older keyframes, three keyframes in a row must point to the same place, LoopVerifier looks at
-/// each, nothing may show that it is another place of the same make (look_alike.hpp), and several
+/// each; where that finds none, the shape of the surroundings proposes some (density_search.hpp);
+/// nothing may show that it is another place of the same make (look_alike.hpp), and several
 /// keyframes must bear one another out (loop_evidence.hpp). When in doubt it is no loop. The poses
 /// need not be near one another; they serve to put neighbouring keyframes together and to refuse
 /// what no odometry errs by. What is kept of a keyframe is bounded, see Place. The result depends
 /// on the keyframes alone. Thread-compatible.
 class LoopDetector {
  public:
-  explicit LoopDetector(std::shared_ptr<const Vocabulary> vocabulary);
+  /// `density`: the shape of the surroundings proposes places too.
+  explicit LoopDetector(std::shared_ptr<const Vocabulary> vocabulary, bool density = true);
 
-  /// Takes keyframes in order, those of a segment one after the other. At most one loop a keyframe;
-  /// not in keyframes that follow a loop closely.
-  std::optional<LoopEdge> add(const Keyframe& keyframe);
+  /// Takes keyframes in order, those of a segment one after the other. The loop to the keyframe, if
+  /// it is at a place seen before; at most one, and none in keyframes that follow a loop closely.
+  /// After a loop that came as a surprise, those of the keyframes that bore it out follow it.
+  std::vector<LoopEdge> add(const Keyframe& keyframe);
   /// What the last add() looked at closely, whether it became a loop or not.
   [[nodiscard]] const std::vector<LoopCandidate>& candidates() const { return candidates_; }
 
@@ -47,17 +51,29 @@ class LoopDetector {
     std::size_t candidate = 0;
     LoopEdge edge;
     PlacePair pair;
-    bool alike = false;  ///< Nothing shows that it is another place.
+    bool alike = false;     ///< Nothing shows that it is another place.
+    bool by_shape = false;  ///< No keypoints speak for it.
+  };
+  /// One that waits for other keyframes to bear it out.
+  struct Waiting {
+    LoopCandidate candidate;
+    LoopEdge edge;
+    PlacePair pair;
   };
 
   void append(const Keyframe& keyframe);
   void let_places_age();
   void propose(const BagOfWords& bag);
   [[nodiscard]] int streak_at(std::size_t entry) const;
-  std::optional<LoopEdge> verify();
+  std::vector<LoopEdge> verify();
   void judge(std::size_t entry, LoopCandidate& candidate);
+  void verify_shape();
+  void judge_shape(const DensitySearch::Proposal& proposal, LoopCandidate& candidate);
+  void compare(std::size_t entry, Judged& found, LoopCandidate& candidate);
   [[nodiscard]] const Judged* choose() const;
-  std::optional<LoopEdge> refuse(const char* reason);
+  void refuse(const char* reason);
+  void wait(const Judged& judged);
+  std::vector<LoopEdge> accept(const Judged& judged);
   [[nodiscard]] bool believable(const LoopEdge& edge, const Place& older,
                                 const Place& current) const;
   [[nodiscard]] bool contradicted(std::size_t entry, const Pose& T_older_current) const;
@@ -66,6 +82,7 @@ class LoopDetector {
   const std::shared_ptr<const Vocabulary> vocabulary_;
   PlaceIndex index_;
   LoopVerifier verifier_;
+  std::optional<DensitySearch> density_;
   std::vector<Place> places_;  ///< The current one is the last.
   SensorTime last_stamp_;
   BagOfWords last_bag_;
@@ -74,7 +91,8 @@ class LoopDetector {
   std::vector<Region> regions_;       ///< Of the current keyframe, the likeliest first.
   std::vector<Region> last_regions_;  ///< Of the one before.
   std::vector<LoopCandidate> candidates_;
-  std::vector<Judged> judged_;  ///< Of the current keyframe; no two of them agree.
+  std::vector<Waiting> waiting_;  ///< In order; at least kLoopEvery_m of way apart.
+  std::vector<Judged> judged_;    ///< Of the current keyframe; no two of them agree.
 };
 
 }  // namespace glint::slam

@@ -78,8 +78,8 @@ void LoopEvidence::speak_against(const PlacePair& pair) {
   last_ = pair;
 }
 
-bool LoopEvidence::convincing(const PlacePair& pair) const {
-  return balance_ >= kEnough && pair.current.path_m - since_m_ >= kEnoughWay_m;
+bool LoopEvidence::convincing(const PlacePair& pair, double times) const {
+  return balance_ >= times * kEnough && pair.current.path_m - since_m_ >= times * kEnoughWay_m;
 }
 
 std::optional<bool> LoopEvidence::foreseen(const PlacePair& pair) const {

@@ -31,8 +31,9 @@ class LoopEvidence {
  public:
   void speak_for(const PlacePair& pair);
   void speak_against(const PlacePair& pair);
-  /// Whether enough keyframes over enough way, `pair` the last of them, speak for it.
-  [[nodiscard]] bool convincing(const PlacePair& pair) const;
+  /// Whether enough keyframes over enough way, `pair` the last of them, speak for it; `times` as
+  /// much as usual.
+  [[nodiscard]] bool convincing(const PlacePair& pair, double times = 1.0) const;
   /// What the loop believed last says of a pair: true or false; nothing once it is far back.
   [[nodiscard]] std::optional<bool> foreseen(const PlacePair& pair) const;
   void believe(const PlacePair& loop) { loops_.push_back(loop); }

@@ -11,10 +11,11 @@ namespace glint::slam {
 LoopSource loops_by_appearance(const SlamConfig& config) {
   if (!config.loops) return {};
   // Shared, for a function must be copyable.
-  const auto detector = std::make_shared<LoopDetector>(open_vocabulary(config.vocabulary));
+  const auto detector =
+      std::make_shared<LoopDetector>(open_vocabulary(config.vocabulary), config.loop_density);
   return [detector](const Keyframe& keyframe) {
     LoopSearch search;
-    search.edge = detector->add(keyframe);
+    search.edges = detector->add(keyframe);
     search.candidates = detector->candidates();
     return search;
   };

@@ -57,4 +57,20 @@ Place make_place(const Keyframe& keyframe, const PlaceOptions& options) {
   return place;
 }
 
+std::vector<Eigen::Vector3f> points_of(std::span<const Place> places, const Pose& T_frame_odom) {
+  std::vector<Eigen::Vector3f> points_m;
+  std::size_t count = 0;
+  for (const Place& place : places) count += place.points_m.size();
+  points_m.reserve(count);
+  for (const Place& place : places) {
+    const Pose T_frame_place = T_frame_odom * place.T_odom_sensor;
+    const Eigen::Matrix3f rotation = T_frame_place.rotation.toRotationMatrix().cast<float>();
+    const Eigen::Vector3f translation_m = T_frame_place.translation_m.cast<float>();
+    for (const Eigen::Vector3f& point_m : place.points_m) {
+      points_m.emplace_back(rotation * point_m + translation_m);
+    }
+  }
+  return points_m;
+}
+
 }  // namespace glint::slam

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "driver/core/pose.hpp"
@@ -35,5 +36,8 @@ struct PlaceOptions {
 
 /// Keeps the strongest keypoints and thinned points of a keyframe; leaves time and path at zero.
 Place make_place(const Keyframe& keyframe, const PlaceOptions& options = {});
+
+/// The points of `places`, all of one segment, in a frame that the odometry's is known in; m.
+std::vector<Eigen::Vector3f> points_of(std::span<const Place> places, const Pose& T_frame_odom);
 
 }  // namespace glint::slam

@@ -11,7 +11,7 @@ constexpr std::uint32_t kFewestPoints = 6;
 // Deviation of the points from their plane, at most.
 constexpr float kThickness_m = 0.06F;
 // Points along a line fit any plane through it: the lesser extent must be this share of the edge.
-constexpr float kLeastSpread = 0.08F;
+constexpr float kLeastSurfaceSpread = 0.08F;
 
 }  // namespace
 
@@ -58,7 +58,7 @@ void SurfaceMap::find_plane(Cube& cube) const {
   const Eigen::Vector3f mean_m = cube.sum_m / n;
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> eigen;
   eigen.computeDirect(cube.squares_m2 / n - mean_m * mean_m.transpose());
-  const float least_extent_m = kLeastSpread * edge_m_;
+  const float least_extent_m = kLeastSurfaceSpread * edge_m_;
   cube.flat = eigen.eigenvalues()(0) < kThickness_m * kThickness_m &&
               eigen.eigenvalues()(1) > least_extent_m * least_extent_m;
   cube.plane.normal = eigen.eigenvectors().col(0).cast<double>().normalized();

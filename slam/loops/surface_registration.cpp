@@ -19,10 +19,9 @@ constexpr double kSettled_m = 0.002;
 constexpr double kSettled_rad = 0.0002;
 constexpr std::size_t kFewestTerms = 50;
 // A normal says something along an axis when it lies within 60 degrees of it. Fewer than so many
-// of them, or so small a share, leave the axis open.
+// of them, or too small a share, leave the axis open.
 constexpr double kAligned = 0.5;
 constexpr double kFewestAligned = 25.0;
-constexpr double kLeastAlignedShare = 0.02;
 // Neighbouring points err alike, so that a good many of them count as one measurement.
 constexpr double kPointsPerMeasurement = 10.0;
 // Of a distance to a surface and of a keypoint, at least.
@@ -40,11 +39,12 @@ constexpr double kOpenSigma_rad = 1.0;
 class Registrator {
  public:
   Registrator(SurfaceMap& map, std::span<const Eigen::Vector3f> points_m,
-              std::span<const PointTerm> keypoints, const Pose& start)
+              std::span<const PointTerm> keypoints, const Pose& start, double least_aligned)
       : map_(map),
         points_m_(points_m),
         keypoints_(keypoints.begin(), keypoints.end()),
-        pose_(start) {
+        pose_(start),
+        least_aligned_(least_aligned) {
     keypoints_.push_back({Eigen::Vector3d::Zero(), start.translation_m, kAnchorWeight});
   }
 
@@ -55,7 +55,7 @@ class Registrator {
       outcome.weak_axes = strip_weak_axes();
       if (terms_.size() < kFewestTerms) return outcome;
       keypoints_.back().fixed_m = pose_.translation_m;
-      joint_ = optimize_jointly(pose_, terms_, keypoints_);
+      joint_ = optimize_jointly(pose_, {terms_, keypoints_});
       if (!joint_.ok) return outcome;
       const Pose step = pose_.inverse() * joint_.T_odom_scan;
       pose_ = joint_.T_odom_scan;
@@ -93,7 +93,7 @@ class Registrator {
     for (const PlaneTerm& term : terms_) normals += term.normal * term.normal.transpose();
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(normals);
     const double least =
-        std::max(kFewestAligned, kLeastAlignedShare * static_cast<double>(terms_.size()));
+        std::max(kFewestAligned, least_aligned_ * static_cast<double>(terms_.size()));
     int weak = 0;
     for (int i = 0; i < 3; ++i) {
       const Eigen::Vector3d axis = eigen.eigenvectors().col(i);
@@ -135,7 +135,7 @@ class Registrator {
     Twist open;
     open.head<3>().setConstant(1.0 / (kOpenSigma_m * kOpenSigma_m));
     open.tail<3>().setConstant(1.0 / (kOpenSigma_rad * kOpenSigma_rad));
-    Matrix6 keypoint_hessian = joint_.hessian - joint_.plane_hessian;
+    Matrix6 keypoint_hessian = joint_.point_hessian;
     keypoint_hessian.diagonal().head<3>().array() -= kAnchorWeight;
     const Matrix6 information =
         joint_.plane_hessian /
@@ -152,6 +152,7 @@ class Registrator {
   std::span<const Eigen::Vector3f> points_m_;
   std::vector<PointTerm> keypoints_;  ///< And the anchor.
   Pose pose_;
+  const double least_aligned_;
   std::vector<PlaneTerm> terms_;
   JointResult joint_;
 };
@@ -159,8 +160,9 @@ class Registrator {
 }  // namespace
 
 SurfaceRegistration register_on_surfaces(SurfaceMap& map, std::span<const Eigen::Vector3f> points_m,
-                                         std::span<const PointTerm> keypoints, const Pose& start) {
-  return Registrator(map, points_m, keypoints, start).run();
+                                         std::span<const PointTerm> keypoints, const Pose& start,
+                                         double least_aligned) {
+  return Registrator(map, points_m, keypoints, start, least_aligned).run();
 }
 
 }  // namespace glint::slam

@@ -28,8 +28,10 @@ struct SurfaceRegistration {
 /// Moves a scan's points onto a map's surfaces, and its keypoints onto those of the map: the gate
 /// for a surface shrinks from 1 m to 0.3 m. Where the surfaces' normals fix no position along an
 /// axis (a corridor's), their chance tilts are not taken for information: the keypoints alone then
-/// say where the scan is along it. Pure but for planes that `map` finds when asked.
+/// say where the scan is along it. An axis is fixed when at least `least_aligned` of the points
+/// found, as a share, have normals along it. Pure but for planes that `map` finds when asked.
 SurfaceRegistration register_on_surfaces(SurfaceMap& map, std::span<const Eigen::Vector3f> points_m,
-                                         std::span<const PointTerm> keypoints, const Pose& start);
+                                         std::span<const PointTerm> keypoints, const Pose& start,
+                                         double least_aligned = 0.02);
 
 }  // namespace glint::slam

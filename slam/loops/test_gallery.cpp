@@ -121,4 +121,14 @@ Vocabulary TestGallery::vocabulary() {
   return train_vocabulary(images, {.branching = 10, .depth = 3, .rounds = 4});
 }
 
+double worst_error(std::span<const LoopEdge> edges, std::span<const Pose> truths) {
+  double worst = 0.0;
+  for (const LoopEdge& edge : edges) {
+    const Pose truth = truths[edge.from].inverse() * truths[edge.to];
+    const Pose error = truth.inverse() * edge.T_from_to;
+    worst = std::max({worst, error.translation_m.norm(), so3_log(error.rotation).norm()});
+  }
+  return worst;
+}
+
 }  // namespace glint::slam

@@ -5,9 +5,11 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <random>
+#include <span>
 #include <vector>
 
 #include "slam/keyframe.hpp"
+#include "slam/loop_edge.hpp"
 #include "slam/loops/vocabulary.hpp"
 
 namespace glint::slam {
@@ -44,5 +46,8 @@ class TestGallery {
 
 /// At `x` along the gallery, `y` from its middle line, looking `yaw_rad` to the left of ahead.
 Pose gallery_pose(double x_m, double y_m, double yaw_rad, int gallery = 0);
+
+/// The largest error, in m or rad, of loops between keyframes that truly were at `truths`.
+double worst_error(std::span<const LoopEdge> edges, std::span<const Pose> truths);
 
 }  // namespace glint::slam

@@ -4,13 +4,14 @@
 // Loop detection against the truth of simulated worlds: how many of the places seen again are
 // found, and whether what is found is true.
 //
-//   loop_recall [--paper] [--drift] WORLD[,name=value...]...
+//   loop_recall [--paper] [--drift] [--no-density] [--bare] WORLD[,name=value...]...
 //   loop_recall --drift building,seed=11,seconds=240 street,seconds=130,motion=vehicle,speed=6
 //
 // A keyframe sees a place again when an older one lies within 3 m (6 m in the open), more than 30 s
 // and 10 m of way before. Five seconds of such keyframes are one place; it is found when one of
 // them gets a loop. A loop is false when it is off by more than 0.3 m or 2 degrees. With --drift
-// odometry errs by 10 m and 20 degrees shortly before the first place is seen again.
+// odometry errs by 10 m and 20 degrees shortly before the first place is seen again; with
+// --no-density places are not proposed by their shape; with --bare keyframes have no keypoints.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -114,39 +115,51 @@ bool is_false(const slam::LoopEdge& edge, const std::vector<Seen>& all, double& 
   return off_m > kFalse_m || so3_log(error.rotation).norm() > kFalse_rad;
 }
 
-Figures detect(const std::vector<Seen>& all, double near) {
+Figures detect(const std::vector<Seen>& all, double near, bool density) {
   Figures figures;
-  slam::LoopDetector detector(slam::default_vocabulary());
+  slam::LoopDetector detector(slam::default_vocabulary(), density);
+  std::vector<bool> closed(all.size());
+  for (const Seen& seen : all) {
+    const double start_ms = thread_cpu_ms();
+    const std::vector<slam::LoopEdge> edges = detector.add(seen.keyframe);
+    figures.cpu_ms.push_back(thread_cpu_ms() - start_ms);
+    for (const slam::LoopEdge& edge : edges) {
+      double off_m = 0.0;
+      ++figures.loops;
+      figures.false_loops += is_false(edge, all, off_m) ? 1 : 0;
+      figures.worst_m = std::max(figures.worst_m, off_m);
+      closed[edge.to] = true;
+    }
+  }
   double place_from_s = -kPlace_s;
   bool place_found = false;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const double start_ms = thread_cpu_ms();
-    const auto edge = detector.add(all[i].keyframe);
-    figures.cpu_ms.push_back(thread_cpu_ms() - start_ms);
-    if (edge) {
-      double off_m = 0.0;
-      ++figures.loops;
-      figures.false_loops += is_false(*edge, all, off_m) ? 1 : 0;
-      figures.worst_m = std::max(figures.worst_m, off_m);
-    }
     if (!seen_again(all, i, near)) continue;
     if (all[i].time_s - place_from_s > kPlace_s) {
       ++figures.places;
       place_from_s = all[i].time_s;
       place_found = false;
     }
-    if (edge && !place_found) ++figures.found;
-    place_found = place_found || edge;
+    if (closed[i] && !place_found) ++figures.found;
+    place_found = place_found || closed[i];
   }
   return figures;
 }
 
-void run(const std::string& text, const slam::SlamConfig& config, bool drift) {
+struct Ways {
+  bool drift = false;
+  bool bare = false;
+};
+
+void run(const std::string& text, const slam::SlamConfig& config, const Ways& ways) {
   const synth::SimulationOptions options = synth::parse_simulation(text, {});
   const double near = near_m(options.world);
   std::vector<Seen> all = walk(options, config);
-  if (drift) add_drift(all, near);
-  Figures figures = detect(all, near);
+  if (ways.drift) add_drift(all, near);
+  if (ways.bare) {
+    for (Seen& seen : all) seen.keyframe.features.clear();
+  }
+  Figures figures = detect(all, near, config.loop_density);
   std::ranges::sort(figures.cpu_ms);
   double total_ms = 0.0;
   for (const double ms : figures.cpu_ms) total_ms += ms;
@@ -168,15 +181,19 @@ void run(const std::string& text, const slam::SlamConfig& config, bool drift) {
 
 int main(int argc, char** argv) try {
   glint::slam::SlamConfig config;
-  bool drift = false;
+  glint::Ways ways;
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
     if (argument == "--paper") {
       config = glint::slam::preset_config("paper");
     } else if (argument == "--drift") {
-      drift = true;
+      ways.drift = true;
+    } else if (argument == "--bare") {
+      ways.bare = true;
+    } else if (argument == "--no-density") {
+      config.loop_density = false;
     } else {
-      glint::run(argument, config, drift);
+      glint::run(argument, config, ways);
     }
   }
 } catch (const std::exception& error) {

@@ -138,8 +138,10 @@ void write_recordings() {
   save("recording", "mcap_messages_packed", rec::test::mcap(few, {.pack_messages = true}));
   save("recording", "mcap_big_endian", rec::test::mcap(few, {.big_endian = true}));
   save("recording", "zstd", rec::test::compress(Compression::kZstd, rec::test::mcap(few)));
-  save("recording", "osf",
-       rec::test::osf(to_metadata_json(make_sensor(LidarProfile::kLegacy, 2, 512))));
+  const std::string metadata = to_metadata_json(make_sensor(LidarProfile::kLegacy, 2, 512));
+  save("recording", "osf", rec::test::osf({metadata, metadata}));
+  save("recording", "osf_unfinished", rec::test::osf({}, false));
+  save("recording", "osf_metadata", rec::test::osf_metadata({metadata, "{}"}));
   const glint::test::TempDir temporary;
   rec::test::write_sqlite(temporary / "sqlite", few);
   save("recording", "sqlite", rec::test::load_file(temporary / "sqlite"));

@@ -53,6 +53,10 @@ class EmulatedSensorTest : public ::testing::TestWithParam<LidarProfile> {
   /// Receives until nothing has come for a second.
   Seen receive(ScanAssembler& assembler) {
     Seen seen;
+    receive(assembler, seen);
+    return seen;
+  }
+  void receive(ScanAssembler& assembler, Seen& seen) {
     RawPacket packet;
     auto last = std::chrono::steady_clock::now();
     while (std::chrono::steady_clock::now() - last < std::chrono::seconds(1)) {
@@ -62,7 +66,15 @@ class EmulatedSensorTest : public ::testing::TestWithParam<LidarProfile> {
     }
     assembler.flush();
     drain(assembler, seen);
-    return seen;
+  }
+
+  /// Receives until the sensor's own stream has begun, of which the IMU is a sign.
+  void receive_first(ScanAssembler& assembler, Seen& seen) {
+    RawPacket packet;
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    while (seen.imu == 0 && std::chrono::steady_clock::now() < deadline) {
+      if (source_->read(packet) == SourceStatus::kPacket) take(packet.bytes, assembler, seen);
+    }
   }
 
   void take(const std::vector<std::byte>& bytes, ScanAssembler& assembler, Seen& seen) {
@@ -194,11 +206,15 @@ seconds = 3.0
   const Json metadata = ask(http_port, SensorResource::kMetadata);
   EXPECT_EQ(metadata["config_params"]["udp_port_lidar"], port_);
   EXPECT_EQ(parse_sensor_info(metadata.dump(), "it").serial_number, world_.info.serial_number);
+  // What is set before the first start would be part of it.
+  ScanAssembler assembler(world_.info);
+  Seen seen;
+  receive_first(assembler, seen);
+  ASSERT_GT(seen.imu, 0U);
   set(http_port, {{"signal_multiplier", 2}});
   EXPECT_EQ(ask(http_port, SensorResource::kActiveConfig)["signal_multiplier"], 2);
 
-  ScanAssembler assembler(world_.info);
-  const Seen seen = receive(assembler);
+  receive(assembler, seen);
   EXPECT_EQ(sensor.finish().exit_code, 0);
   const Json report = world_.read_report();
   EXPECT_EQ(report["sensor"]["config_writes"], 1);

@@ -31,7 +31,9 @@ fi
 rm -rf "$root/home/glint"
 git clone -q --no-hardlinks "$project" "$root/home/glint/project"
 
-inside=(systemd-nspawn -q -D "$root" --pipe --register=no --keep-unit --chdir=/home/glint/project)
+# Some tests make networks of their own.
+inside=(systemd-nspawn -q -D "$root" --pipe --register=no --keep-unit --capability=CAP_NET_ADMIN
+  --chdir=/home/glint/project)
 if [ -d "$data" ]; then
   mkdir -p "$root/home/glint/data"
   inside+=(--bind-ro="$(readlink -f "$data"):/home/glint/data" --setenv=GLINT_DATA_DIR=/home/glint/data)

@@ -12,13 +12,13 @@
 namespace glint::synth {
 namespace {
 
-constexpr double kTexelM = 0.01;
+constexpr double kDecalTexelM = 0.01;
 constexpr double kAsphalt = 0.15;
 
 // A picture that draw(canvas) fills.
 template <class Draw>
 std::shared_ptr<const AlbedoMap> picture(double width_m, double height_m, Draw&& draw) {
-  Canvas canvas(width_m, height_m, kTexelM, 0.5);
+  Canvas canvas(width_m, height_m, kDecalTexelM, 0.5);
   draw(canvas);
   return std::make_shared<const AlbedoMap>(canvas);
 }
@@ -82,9 +82,9 @@ std::shared_ptr<const AlbedoMap> road_arrow(double width_m, double height_m, Ran
     const double middle_m = 0.5 * width_m;
     const double head_m = std::min(0.4 * height_m, 1.2);
     canvas.fill({middle_m - 0.08, 0.0, 0.16, height_m - head_m}, paint);
-    for (double v = 0.0; v < head_m; v += kTexelM) {
+    for (double v = 0.0; v < head_m; v += kDecalTexelM) {
       const double half_m = middle_m * (1.0 - v / head_m);
-      canvas.fill({middle_m - half_m, height_m - head_m + v, 2.0 * half_m, kTexelM}, paint);
+      canvas.fill({middle_m - half_m, height_m - head_m + v, 2.0 * half_m, kDecalTexelM}, paint);
     }
     roughen(canvas, canvas.whole(), {{0.5, 0.15}, {0.1, 0.2}}, random);
   });

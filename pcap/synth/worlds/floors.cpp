@@ -10,7 +10,7 @@
 namespace glint::synth {
 namespace {
 
-constexpr double kSlabM = 0.4;
+constexpr double kStorySlabM = 0.4;
 // From the corridor to the first step; from the last step to the far wall.
 constexpr double kHallM = 1.3;
 constexpr double kLandingM = 1.5;
@@ -26,7 +26,7 @@ struct Plan {
   int risers;  ///< Of a flight.
 
   [[nodiscard]] double storey_m() const { return 2.0 * risers * kRiseM; }
-  [[nodiscard]] double room_m() const { return storey_m() - kSlabM; }
+  [[nodiscard]] double room_m() const { return storey_m() - kStorySlabM; }
   [[nodiscard]] double flight_width_m() const { return 0.5 * width_m - 0.05; }
   [[nodiscard]] double flight_m() const { return (risers - 1) * kTreadM; }
   [[nodiscard]] double stairwell_m() const { return kHallM + flight_m() + kLandingM; }
@@ -133,7 +133,8 @@ void add_stairwell(WorldBuilder& builder, const Plan& plan, const Flights& fligh
   add(surfaces, level({-kHallM, 0, plan.storey_m()}, kHallM, plan.width_m), step);
   add(surfaces, overhead({-kHallM, 0, plan.room_m()}, kHallM, plan.width_m), wall);
   add(surfaces,
-      upright({-kHallM, plan.width_m, plan.room_m()}, {-kHallM, 0, plan.room_m()}, kSlabM), step);
+      upright({-kHallM, plan.width_m, plan.room_m()}, {-kHallM, 0, plan.room_m()}, kStorySlabM),
+      step);
 
   const double between_y = 0.5 * plan.width_m;
   add_railing(surfaces, {-kHallM, between_y, 0.2}, {landing_x, between_y, landing_z}, rail);

@@ -82,13 +82,18 @@ void add_traffic(WorldBuilder& builder, const Block& block,
   Random& random = builder.random();
   const RoundWay way({0, 0, 0}, 2.0 * (block.x + kOtherLaneM), 2.0 * (block.y + kOtherLaneM), 5.0,
                      0.0, true);
-  const int cars = 4 + random.below(5);
+  const auto as_many = [&](int usual) {
+    return static_cast<int>(std::lround(usual * builder.traffic()));
+  };
+  // Bumper to bumper at most.
+  const int cars = std::min(as_many(4 + random.below(5)), static_cast<int>(way.length_m() / 7.0));
+  const double apart_m = way.length_m() / std::max(cars, 1);
+  const double jitter = std::min(0.3, 0.5 * (1.0 - 5.0 / apart_m));
   const double speed_mps = random.uniform(5.0, 8.0);
   for (int i = 0; i < cars; ++i) {
-    add_driver(builder, things, way, way.length_m() * (i + random.uniform(-0.3, 0.3)) / cars,
-               speed_mps);
+    add_driver(builder, things, way, apart_m * (i + random.uniform(-jitter, jitter)), speed_mps);
   }
-  const int people = 6 + random.below(5);
+  const int people = as_many(6 + random.below(5));
   for (int i = 0; i < people; ++i) {
     add_walker(builder, pavements[static_cast<std::size_t>(i) % pavements.size()], things);
   }

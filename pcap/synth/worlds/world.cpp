@@ -40,6 +40,9 @@ constexpr std::array<World (*)(WorldBuilder&), kEntries.size()> kMakers = {
 std::span<const WorldEntry> world_list() { return kEntries; }
 
 World make_world(const WorldOptions& options) {
+  if (!(options.traffic >= 0.0 && options.traffic <= 10.0)) {
+    throw OptionError("traffic must be between 0 and 10 times the usual");
+  }
   std::string known;
   for (std::size_t i = 0; i < kEntries.size(); ++i) {
     if (kEntries[i].name == options.name) {

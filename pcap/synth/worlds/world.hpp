@@ -26,6 +26,7 @@ struct WorldOptions {
   std::string name = "corridor";  ///< One of world_names().
   std::uint64_t seed = 1;
   std::vector<Photograph> photographs;  ///< To hang up where posters hang.
+  double traffic = 1.0;                 ///< Times as many moving cars and people as usual.
 };
 
 /// A world's name and one line that says what it is.
@@ -36,7 +37,7 @@ struct WorldEntry {
 /// All worlds that make_world() knows.
 std::span<const WorldEntry> world_list();
 
-/// @throws OptionError that lists the known names.
+/// @throws OptionError that lists the known names, or tells the traffic possible.
 World make_world(const WorldOptions& options);
 
 }  // namespace glint::synth

@@ -20,7 +20,9 @@ std::uint64_t key_of(std::string_view name) {
 }  // namespace
 
 WorldBuilder::WorldBuilder(const WorldOptions& options)
-    : random_{options.seed, key_of(options.name)}, photographs_(options.photographs) {}
+    : random_{options.seed, key_of(options.name)},
+      photographs_(options.photographs),
+      traffic_(options.traffic) {}
 
 std::shared_ptr<const AlbedoMap> WorldBuilder::material(Material material, int variant) {
   auto& picture = materials_[{material, variant}];

@@ -29,6 +29,8 @@ class WorldBuilder {
   /// All of the world's randomness.
   Random& random() { return random_; }
   [[nodiscard]] std::span<const Photograph> photographs() const { return photographs_; }
+  /// Times as many moving things as usual.
+  [[nodiscard]] double traffic() const { return traffic_; }
 
   /// The material's picture number `variant`, made when first asked for.
   std::shared_ptr<const AlbedoMap> material(Material material, int variant = 0);
@@ -58,6 +60,7 @@ class WorldBuilder {
  private:
   Random random_;
   std::span<const Photograph> photographs_;
+  double traffic_;
   std::map<std::pair<Material, int>, std::shared_ptr<const AlbedoMap>> materials_;
   Surfaces surfaces_;
   std::vector<Placement> placements_;

@@ -36,13 +36,13 @@ std::vector<double> ranges_m(const World& w, const Eigen::Vector3d& ground_m, do
 
 bool indoors(const World& w) { return w.route.clear_height_m < 20.0; }
 
-struct Case {
+struct WorldCase {
   std::string name;
   std::uint64_t seed;
 };
 
-std::vector<Case> all_cases() {
-  std::vector<Case> cases;
+std::vector<WorldCase> all_cases() {
+  std::vector<WorldCase> cases;
   for (const WorldEntry& entry : world_list()) {
     for (const std::uint64_t seed : {1U, 2U}) cases.push_back({std::string(entry.name), seed});
   }
@@ -90,7 +90,7 @@ void expect_safe_journey(const World& w, std::uint64_t seed) {
   }
 }
 
-class EveryWorld : public testing::TestWithParam<Case> {};
+class EveryWorld : public testing::TestWithParam<WorldCase> {};
 
 TEST_P(EveryWorld, LeadsOverGroundAndClearOfEverythingThatStandsOrMoves) {
   const World w = world(GetParam().name, GetParam().seed);
@@ -248,8 +248,8 @@ TEST(Hill, SlopesByFifteenDegreesAtMostAndNotMuchLess) {
   EXPECT_LT(steepest, 0.29);
 }
 
-TEST(Street, HasTrafficThatMovesSmoothly) {
-  const World w = world("street", 1);
+// Of rays all round from places along the route.
+int rays_on_moving_things(const World& w) {
   int moving = 0;
   for (const Eigen::Vector3d& place_m : places_along(w.route, 4.0)) {
     const auto moment = w.scene.at(1.0);
@@ -260,7 +260,29 @@ TEST(Street, HasTrafficThatMovesSmoothly) {
       moving += moment.cast(ray).moving;
     }
   }
-  EXPECT_GT(moving, 50);
+  return moving;
+}
+
+World street_with(double traffic) {
+  WorldOptions options;
+  options.name = "street";
+  options.seed = 1;
+  options.traffic = traffic;
+  return make_world(options);
+}
+
+TEST(Street, HasTrafficThatMovesSmoothly) {
+  EXPECT_GT(rays_on_moving_things(world("street", 1)), 50);
+}
+
+TEST(Street, HasAsMuchTrafficAsAskedFor) {
+  EXPECT_EQ(rays_on_moving_things(street_with(0.0)), 0);
+  const int usual = rays_on_moving_things(street_with(1.0));
+  EXPECT_EQ(usual, rays_on_moving_things(world("street", 1)));
+  EXPECT_GT(rays_on_moving_things(street_with(10.0)), 3 * usual);
+  for (const double impossible : {-1.0, 10.1, std::nan("")}) {
+    EXPECT_THROW(street_with(impossible), OptionError) << impossible;
+  }
 }
 
 TEST(Campus, LeadsOverFiveKilometresPastPlacesSeenBefore) {
