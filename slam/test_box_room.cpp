@@ -53,6 +53,7 @@ SensorInfo room_sensor(std::vector<double> altitude_deg) {
 
 SensorInfo room_sensor() {
   std::vector<double> altitude_deg;
+  altitude_deg.reserve(32);
   for (int row = 0; row < 32; ++row) altitude_deg.push_back(35.0 - 70.0 * row / 31.0);
   return room_sensor(std::move(altitude_deg));
 }

@@ -78,6 +78,7 @@ std::vector<std::size_t> DensitySearch::within_reach(std::span<const Place> plac
   std::ranges::sort(near);
   if (near.size() > kMostAsked) near.resize(kMostAsked);
   std::vector<std::size_t> entries;
+  entries.reserve(near.size());
   for (const auto& [apart_m, entry] : near) entries.push_back(entry);
   return entries;
 }
@@ -99,8 +100,9 @@ std::vector<DensitySearch::Proposal> DensitySearch::propose(std::span<const Plac
     };
     if (!leaves_room(places[entry], current, hit.T_older_current)) continue;
     if (std::ranges::any_of(proposals, same)) continue;
-    const Pose T = upright(places[entry]).inverse() * hit.T_older_current * upright(current);
-    proposals.push_back({entry, T, hit.corners});
+    const Pose T_older_current =
+        upright(places[entry]).inverse() * hit.T_older_current * upright(current);
+    proposals.push_back({entry, T_older_current, hit.corners});
     if (proposals.size() == kMostProposals) break;
   }
   return proposals;
