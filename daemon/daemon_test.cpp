@@ -87,8 +87,8 @@ TEST(DaemonTest, BeforeTheFirstScanTheStateIsInitAndThereIsNoPose) {
 
 TEST(DaemonTest, AnAbsentSensorIsNoDeadThread) {
   TestDaemon daemon;
-  std::this_thread::sleep_for(700ms);
-  EXPECT_TRUE(daemon.runtime().alive(600'000'000));
+  std::this_thread::sleep_for(2200ms);
+  EXPECT_TRUE(daemon.runtime().alive(2'000'000'000));
   EXPECT_EQ(daemon.runtime().fault(), "");
 }
 
