@@ -174,6 +174,8 @@ constexpr std::array kKeys{
     ConfigKey{"slam.local_map_reach_m", &at<&Config::slam, &SlamConfig::local_map_reach_m>, 0,
               10000, "", "",
               "Odometry forgets what was left behind by this distance; 0: it does not."},
+    ConfigKey{"slam.patches", &at<&Config::slam, &SlamConfig::patches>, 0, 0, "", "",
+              "Pieces of the image tell the way along axes that surfaces leave open."},
     ConfigKey{
         "slam.moving_objects", &at<&Config::slam, &SlamConfig::moving_objects>, 0, 0, "", "",
         "Leave out what moves: of the map what comes where keyframes before saw through, of the "

@@ -16,6 +16,7 @@ SlamConfig preset_config(const std::string& name) {
     config.deskew = config.gyro = config.accelerometer = config.motion_prior = config.degeneracy =
         false;
     config.image_filter = config.ba_by_noise = config.moving_objects = false;
+    config.patches = false;
     config.pgo_gravity = config.loop_consistency = false;
     config.orb_upright = false;
     config.loop_density = false;

@@ -102,6 +102,8 @@ struct SlamConfig {
   /// Last scans whose keypoints are compared, and the weight of these residuals.
   int ba_frames = 10;
   double ba_weight = 0.3;
+  /// Pieces of the intensity image tell the way along axes that surfaces leave open (PatchTracker).
+  bool patches = true;
   /// Keypoints weigh what their residuals show them to be good to.
   bool ba_by_noise = true;
   /// Most times that associations are made anew for a scan.

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <vector>
 
 #include "driver/core/scan_assembler.hpp"
@@ -94,6 +95,62 @@ std::vector<ImuSample> measure(const synth::Simulator& simulator, SensorTime fro
     samples.push_back(sample);
   }
   return samples;
+}
+
+struct TunnelDrive {
+  double path_m = 0.0;
+  double error_m = 0.0;
+  bool degraded_at_the_end = false;
+};
+
+// At 2 m/s through a tunnel with 16 beams, from rest.
+TunnelDrive drive_through(const char* world, bool patches) {
+  synth::SimulationOptions options;
+  options.world = world;
+  options.seconds = 8.0;
+  options.motion.speed_mps = 2.0;
+  options.sensor.beams = 16;
+  options.sensor.columns = kColumns;
+  synth::Simulator simulator(options);
+  SlamConfig config;
+  config.patches = patches;
+  Frontend frontend(simulator.info(), config);
+  LidarScan scan;
+  synth::ScanTruth truth;
+  std::optional<SensorTime> begin;
+  SensorTime measured;
+  TunnelDrive drive;
+  while (simulator.next(scan, truth)) {
+    scan.columns_expected = scan.columns_received = kColumns;
+    scan.end_time = scan.column_time.back();
+    scan.mid_time = scan.column_time[kColumns / 2];
+    if (!begin) {
+      begin = scan.end_time;
+      measured = scan.column_time.front() + -100'000'000;
+    }
+    for (const ImuSample& sample : measure(simulator, measured, scan.end_time)) {
+      frontend.add_imu(sample);
+    }
+    measured = scan.end_time + 10'000'000;
+    const OdometryEstimate& estimate = frontend.process(scan);
+    const Pose way = simulator.true_pose(*begin).inverse() * simulator.true_pose(scan.end_time);
+    drive.path_m = way.translation_m.norm();
+    drive.error_m = (estimate.T_odom_sensor.translation_m - way.translation_m).norm();
+    drive.degraded_at_the_end = estimate.state == TrackingState::kDegraded;
+  }
+  return drive;
+}
+
+TEST(FrontendTunnel, JointsTellTheWayWhereGeometryDoesNot) {
+  const TunnelDrive drive = drive_through("tunnel", true);
+  EXPECT_GT(drive.path_m, 8.0);
+  EXPECT_LT(drive.error_m, 0.1);
+  EXPECT_FALSE(drive.degraded_at_the_end);
+  EXPECT_GT(drive_through("tunnel", false).error_m, 3.0 * drive.error_m);
+}
+
+TEST(FrontendTunnel, BareWallsAreReported) {
+  EXPECT_TRUE(drive_through("tunnel-bare", true).degraded_at_the_end);
 }
 
 TEST_F(FrontendTest, AnImuMakesPosesBetterWheneverItsMeasurementsCome) {

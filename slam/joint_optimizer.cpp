@@ -19,6 +19,7 @@ constexpr double kConverged = 1e-5;
 struct NormalEquations {
   Matrix6 plane_hessian = Matrix6::Zero();
   Matrix6 point_hessian = Matrix6::Zero();
+  Matrix6 patch_hessian = Matrix6::Zero();
   Matrix6 prior_hessian = Matrix6::Zero();
   Twist gradient = Twist::Zero();
   double plane_squares = 0.0;
@@ -83,6 +84,11 @@ void add_prior(const PosePrior& prior, const Pose& pose, NormalEquations& sum) {
   sum.gradient += prior.information * se3_log(prior.T_odom_scan.inverse() * pose);
 }
 
+void add_quadratic(const QuadraticTerm& term, const Pose& pose, NormalEquations& sum) {
+  sum.patch_hessian = term.hessian;
+  sum.gradient += term.gradient + term.hessian * se3_log(term.T_odom_scan.inverse() * pose);
+}
+
 NormalEquations linearize(const Pose& pose, const JointTerms& terms, const JointOptions& options) {
   NormalEquations sum;
   add_planes(terms.planes, pose, options.plane_huber_m, sum);
@@ -90,6 +96,7 @@ NormalEquations linearize(const Pose& pose, const JointTerms& terms, const Joint
   sum.gradient = terms.plane_projection * sum.gradient;
   add_points(terms.points, pose, options.point_huber_m, sum);
   if (terms.prior) add_prior(*terms.prior, pose, sum);
+  if (terms.patches) add_quadratic(*terms.patches, pose, sum);
   return sum;
 }
 
@@ -105,7 +112,8 @@ JointResult optimize_jointly(const Pose& start, const JointTerms& terms,
   Pose pose = start;
   for (int i = 0; i < options.max_iterations; ++i) {
     const NormalEquations sum = linearize(pose, terms, options);
-    const Matrix6 hessian = sum.plane_hessian + sum.point_hessian + sum.prior_hessian;
+    const Matrix6 hessian =
+        sum.plane_hessian + sum.point_hessian + sum.patch_hessian + sum.prior_hessian;
     const Twist step = hessian.ldlt().solve(-sum.gradient);
     if (!step.allFinite()) return result;
     pose.translation_m += pose.rotation * step.head<3>();
@@ -115,6 +123,7 @@ JointResult optimize_jointly(const Pose& start, const JointTerms& terms,
   const NormalEquations sum = linearize(pose, terms, options);
   result.plane_hessian = sum.plane_hessian;
   result.point_hessian = sum.point_hessian;
+  result.patch_hessian = sum.patch_hessian;
   result.prior_hessian = sum.prior_hessian;
   result.plane_rms_m = root_mean(sum.plane_squares, sum.plane_weight);
   result.point_rms_m = root_mean(sum.point_squares, sum.point_weight);

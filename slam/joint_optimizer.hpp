@@ -26,6 +26,7 @@ struct JointTerms {
   /// Takes out what the planes must not say, see projection_without().
   Eigen::Matrix<double, 6, 6> plane_projection = Eigen::Matrix<double, 6, 6>::Identity();
   std::optional<PosePrior> prior{};
+  std::optional<QuadraticTerm> patches{};
 };
 
 struct JointOptions {
@@ -37,16 +38,17 @@ struct JointOptions {
 struct JointResult {
   bool ok = false;
   Pose T_odom_scan;
-  /// Sum of J^T w J of plane terms (projected), of point terms, and the prior's information:
-  /// translation then rotation, right perturbation.
+  /// Sum of J^T w J of plane terms (projected), of point terms and patches, the prior's
+  /// information: translation then rotation, right perturbation.
   Eigen::Matrix<double, 6, 6> plane_hessian = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 6> point_hessian = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Matrix<double, 6, 6> patch_hessian = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 6> prior_hessian = Eigen::Matrix<double, 6, 6>::Zero();
   double plane_rms_m = 0.0;  ///< Robustly weighted.
   double point_rms_m = 0.0;
 
   [[nodiscard]] Eigen::Matrix<double, 6, 6> hessian() const {
-    return plane_hessian + point_hessian + prior_hessian;
+    return plane_hessian + point_hessian + patch_hessian + prior_hessian;
   }
 };
 

@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 
+#include "driver/core/pose.hpp"
+
 namespace glint::slam {
 
 /// A point of the scan and the plane that the map has near it. The residual f_s is the point's
@@ -21,6 +23,14 @@ struct PointTerm {
   Eigen::Vector3d point_m;  ///< Scan frame.
   Eigen::Vector3d fixed_m;  ///< Odometry frame.
   double weight = 1.0;
+};
+
+/// What is known of the pose near one that it was looked at from: half of d^T hessian d + gradient
+/// . d for T_odom_scan * exp(d).
+struct QuadraticTerm {
+  Pose T_odom_scan;
+  Eigen::Matrix<double, 6, 6> hessian = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Matrix<double, 6, 1> gradient = Eigen::Matrix<double, 6, 1>::Zero();
 };
 
 }  // namespace glint::slam

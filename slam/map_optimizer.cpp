@@ -25,8 +25,32 @@ constexpr double kUnit_m2 = 0.02 * 0.02;
 // Median length of a vector with that deviation along each axis; what the best keypoints reach.
 constexpr double kMedianToSigma = 0.65;
 constexpr double kBestKeypoint_m = 0.02;
+// So many patches, in so many of eight sectors, are believed rather than keypoints that are off by
+// more than this along a weak axis.
+constexpr int kFewestPatches = 12;
+constexpr int kFewestPatchSectors = 3;
+constexpr double kContradicting_m = 0.08;
+constexpr double kBelievedChiSquared = 3.84;
 // With fewer residuals there is nothing to be said.
 constexpr std::size_t kFewestJointTerms = 30;
+
+bool speak(const PatchVotes& votes) {
+  return votes.patches >= kFewestPatches && votes.sectors >= kFewestPatchSectors;
+}
+
+// Lines that run along a weak axis look everywhere as if the sensor stood: what contradicts the
+// motion so far is not believed (chi^2, 95 %).
+bool agree(const Pose& found, const PosePrior& prior, const WeakAxes& axes) {
+  const Eigen::Vector3d off_m =
+      found.rotation.conjugate() * (found.translation_m - prior.T_odom_scan.translation_m);
+  return std::ranges::all_of(axes, [&](const WeakAxis& weak) {
+    if (weak.rotation) return true;
+    const Eigen::Vector3d axis = found.rotation.conjugate() * weak.axis;
+    const double information = axis.dot(prior.information.topLeftCorner<3, 3>() * axis);
+    const double along_m = off_m.dot(axis);
+    return along_m * along_m * information < kBelievedChiSquared;
+  });
+}
 
 PlaneFeatureOptions plane_options(const SlamConfig& config) {
   PlaneFeatureOptions options;
@@ -90,14 +114,17 @@ MapOptimizer::MapOptimizer(const SensorInfo& info, const SlamConfig& config,
     : config_(config),
       middle_(middle_direction(info, *lut)),
       turn_radps_(beam_turn_radps(info, *lut)),
-      extractor_(info, plane_options(config), std::move(lut)),
+      extractor_(info, plane_options(config), lut),
       ground_finder_(ground_options(config)),
       map_(make_map(config)),
-      window_(window_options(config)) {}
+      window_(window_options(config)) {
+  if (config.patches && config.degeneracy) patches_.emplace(info, std::move(lut));
+}
 
 void MapOptimizer::observe(const ScanImages& images, std::span<const Pose> T_reference_column,
                            const Eigen::Vector3d& up) {
   rigid_ = T_reference_column.empty();
+  if (patches_) patches_->observe(images, T_reference_column);
   points_m_.clear();
   ground_count_ = 0;
   ground_plane_.reset();
@@ -126,9 +153,13 @@ MapOptimization MapOptimizer::optimize(const Features& features, const std::vect
     }
     if (planes_.size() + points_.size() < kFewestJointTerms) return outcome;
     terms.planes = planes_;
-    terms.points = points_;
     if (config_.degeneracy) leave_open(pose, terms, outcome.weak_axes);
+    if (patches_) {
+      if (round == 0) pose = place_by_patches(pose, outcome.weak_axes, prior);
+      ask_patches(pose, outcome.weak_axes, terms);
+    }
     if (config_.ba_by_noise) weigh_keypoints(pose);
+    terms.points = points_;
     result = optimize_jointly(pose, terms);
     if (!result.ok) return outcome;
     const bool done = settled(pose, result.T_odom_scan);
@@ -142,14 +173,36 @@ MapOptimization MapOptimizer::optimize(const Features& features, const std::vect
                                             static_cast<double>(points_m_.size());
   outcome.plane_rms_m = result.plane_rms_m;
   outcome.point_terms = static_cast<int>(points_.size());
+  outcome.patch_terms = votes_.patches;
   outcome.covariance = unit_variance_m2(result) * result.hessian().inverse();
   outcome.ok = outcome.covariance.allFinite();
-  for (WeakAxis& axis : outcome.weak_axes) {
-    const bool measured = axis.rotation && prior && prior->turn_is_measured;
-    axis.critical = !measured && !carried_by_points(axis, points_, pose);
-  }
+  judge(outcome.weak_axes, pose, prior && prior->turn_is_measured);
   weak_before_ = outcome.weak_axes;
   return outcome;
+}
+
+// Which of the axes nothing tells of.
+void MapOptimizer::judge(WeakAxes& axes, const Pose& pose, bool turn_is_measured) const {
+  for (WeakAxis& axis : axes) {
+    const bool told = axis.rotation ? turn_is_measured : speak(votes_);
+    axis.critical = !told && !carried_by_points(axis, points_, pose);
+  }
+}
+
+// Where the patches look most alike, if that can be.
+Pose MapOptimizer::place_by_patches(const Pose& pose, const WeakAxes& weak,
+                                    const std::optional<PosePrior>& prior) {
+  const Pose found = patches_->search(pose, weak);
+  patches_agree_ = !prior || agree(found, *prior, weak);
+  return patches_agree_ ? found : pose;
+}
+
+void MapOptimizer::ask_patches(const Pose& pose, const WeakAxes& weak, JointTerms& terms) {
+  votes_ = patches_agree_ ? patches_->votes(pose) : PatchVotes{};
+  terms.patches = votes_.term;
+  terms.patches->hessian *= kUnit_m2;
+  terms.patches->gradient *= kUnit_m2;
+  if (speak(votes_)) drop_contradicting(weak, pose);
 }
 
 // Of a residual of unit weight: what the weights stand for, or as the residuals show.
@@ -173,6 +226,16 @@ void MapOptimizer::weigh_keypoints(const Pose& pose) {
   const double factor = kUnit_m2 / (sigma_m * sigma_m) * config_.ba_weight / keypoint_weight_;
   for (PointTerm& term : points_) term.weight *= factor;
   keypoint_weight_ *= factor;
+}
+
+// Keypoints at the ends of what runs along a weak axis go with the sensor.
+void MapOptimizer::drop_contradicting(const WeakAxes& weak, const Pose& pose) {
+  std::erase_if(points_, [&](const PointTerm& term) {
+    const Eigen::Vector3d error_m = pose * term.point_m - term.fixed_m;
+    return std::ranges::any_of(weak, [&](const WeakAxis& axis) {
+      return !axis.rotation && std::abs(error_m.dot(axis.axis)) > kContradicting_m;
+    });
+  });
 }
 
 // Along weak axes the surfaces' noise would outvote keypoints and prior: it gets no vote.
@@ -219,12 +282,14 @@ void MapOptimizer::remember(const Features& features, const std::vector<Match>& 
                             const Pose& T_odom_scan, const Twist& velocity) {
   if (rigid_) drop_displaced(velocity.tail<3>());
   map_->add(points_m_, ground_count_, T_odom_scan);
+  if (patches_) patches_->renew(T_odom_scan, weak_before_);
   if (config_.ba) window_.push(features, matches, T_odom_scan);
 }
 
 void MapOptimizer::reset() {
   map_->clear();
   window_.clear();
+  if (patches_) patches_->clear();
   weak_before_ = {};
   ground_finder_.reset();
 }

@@ -17,6 +17,7 @@
 #include "slam/ground.hpp"
 #include "slam/joint_optimizer.hpp"
 #include "slam/matching.hpp"
+#include "slam/patch_tracker.hpp"
 #include "slam/plane_features.hpp"
 #include "slam/plane_map.hpp"
 #include "slam/scan_images.hpp"
@@ -34,6 +35,7 @@ struct MapOptimization {
   double overlap = 0.0;      ///< Share of the scan's surface points that found a plane.
   double plane_rms_m = 0.0;  ///< Of their distances to it.
   int point_terms = 0;
+  int patch_terms = 0;
   /// What the surfaces leave open, and which of it the keypoints do too.
   WeakAxes weak_axes;
 };
@@ -46,7 +48,8 @@ class MapOptimizer {
   MapOptimizer(const SensorInfo& info, const SlamConfig& config, std::shared_ptr<const XyzLut> lut);
 
   /// Takes a scan's surfaces and parts the ground from them. The poses of its columns bring its
-  /// points to one instant; none: it is taken as rigid. `up` is in the scan frame.
+  /// points to one instant; none: it is taken as rigid. `up` is in the scan frame. Images and poses
+  /// are to stay as they are until remember() or the next scan.
   void observe(const ScanImages& images, std::span<const Pose> T_reference_column,
                const Eigen::Vector3d& up);
   /// The pose of the observed scan, which odometry places at `start`; `matches` are the keypoints
@@ -71,6 +74,11 @@ class MapOptimizer {
   [[nodiscard]] double unit_variance_m2(const JointResult& result) const;
   void weigh_keypoints(const Pose& pose);
   void leave_open(const Pose& pose, JointTerms& terms, WeakAxes& weak) const;
+  [[nodiscard]] Pose place_by_patches(const Pose& pose, const WeakAxes& weak,
+                                      const std::optional<PosePrior>& prior);
+  void ask_patches(const Pose& pose, const WeakAxes& weak, JointTerms& terms);
+  void drop_contradicting(const WeakAxes& weak, const Pose& pose);
+  void judge(WeakAxes& axes, const Pose& pose, bool turn_is_measured) const;
   void associate_keypoints(const Features& features, const std::vector<Match>& matches,
                            const Pose& pose);
   void drop_displaced(const Eigen::Vector3d& turn_radps);
@@ -84,7 +92,10 @@ class MapOptimizer {
   GroundFinder ground_finder_;
   std::unique_ptr<PlaneMap> map_;
   SlidingWindow window_;
-  WeakAxes weak_before_;  ///< Of the last optimised scan.
+  std::optional<PatchTracker> patches_;
+  PatchVotes votes_;            ///< On the scan's pose; none without patches.
+  bool patches_agree_ = false;  ///< With the motion so far.
+  WeakAxes weak_before_;        ///< Of the last optimised scan.
 
   std::vector<Eigen::Vector3f> points_m_;  ///< Of the scan; those on the ground first.
   std::size_t ground_count_ = 0;

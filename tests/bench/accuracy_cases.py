@@ -66,7 +66,7 @@ CASES = {
 }
 
 # Elements of `slam` that are switched off one at a time: boolean keys, or KEY=VALUE of what stands in for them.
-SWITCHES = ["image_filter", "ba_by_noise", "deskew", "gyro", "ground", "degeneracy", "moving_objects", "plane_map=tree",
+SWITCHES = ["image_filter", "patches", "ba_by_noise", "deskew", "gyro", "ground", "degeneracy", "moving_objects", "plane_map=tree",
             "intensity"]
 
 
