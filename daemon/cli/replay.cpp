@@ -13,7 +13,6 @@
 
 #include "daemon/cli/capture_input.hpp"
 #include "daemon/cli/command.hpp"
-#include "daemon/cli/ply_writer.hpp"
 #include "daemon/cli/replay_run.hpp"
 #include "daemon/cli/report.hpp"
 #include "daemon/cli/scan_table.hpp"
@@ -22,6 +21,7 @@
 #include "daemon/cli/trajectory_writer.hpp"
 #include "daemon/clock_settings.hpp"
 #include "daemon/config.hpp"
+#include "daemon/export/ply_writer.hpp"
 #include "daemon/replay_pacer.hpp"
 #include "daemon/version.hpp"
 #include "pcap/pcap_source.hpp"
