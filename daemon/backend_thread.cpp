@@ -32,6 +32,7 @@ void BackendThread::run() {
     result = crossings_.keyframes.pop(keyframe, kWait);
     look_at_sensor();
     if (result == PopResult::kItem) process(keyframe);
+    keep_session();
   }
   const std::uint32_t epoch = backend_.correction().epoch;
   backend_.finish();
@@ -56,6 +57,13 @@ void BackendThread::process(const slam::Keyframe& keyframe) {
   duration_.add(wall_ns(slam::Stage::kBackend));
   pgo_duration_.add(wall_ns(slam::Stage::kPgo));
   tell(epoch);
+}
+
+// Keyframes may be long in coming, but what the disk does not take is told at once.
+void BackendThread::keep_session() {
+  const std::uint64_t failures = backend_.store_failures();
+  backend_.keep_session();
+  if (backend_.store_failures() != failures) publish();
 }
 
 // Odometry has ended, and what it was told last it may not have seen.

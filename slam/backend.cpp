@@ -2,9 +2,13 @@
 // Copyright 2026 The Glint Authors
 #include "slam/backend.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include "slam/loops/vocabulary.hpp"
 
 namespace glint::slam {
 namespace {
@@ -37,6 +41,14 @@ LargestCorrection largest_of(std::span<const Pose> before, std::span<const Pose>
   return largest;
 }
 
+std::unique_ptr<SessionStore> make_store(const std::filesystem::path& file,
+                                         const SlamConfig& config, Clock clock) {
+  if (file.empty()) return nullptr;
+  auto store = std::make_unique<SessionStore>(file, SessionStoreOptions{.clock = clock});
+  store->set_meta("preset", config.preset);
+  return store;
+}
+
 }  // namespace
 
 Backend::Backend(const SlamConfig& config, const std::filesystem::path& session_file, Clock clock,
@@ -45,13 +57,19 @@ Backend::Backend(const SlamConfig& config, const std::filesystem::path& session_
       clock_(clock),
       loops_(config.loops ? std::move(loops) : LoopSource{}),
       graph_({config.pgo_gravity, config.loop_consistency}),
-      store_(session_file.empty() ? nullptr : std::make_unique<SessionStore>(session_file, config)),
-      snapshot_(std::make_shared<const MapSnapshot>()) {}
+      store_(make_store(session_file, config, clock)),
+      snapshot_(std::make_shared<const MapSnapshot>()) {
+  // Words of one vocabulary say nothing in another.
+  if (store_ && loops_) {
+    store_->set_meta("vocabulary_hash",
+                     fmt::format("{:016x}", open_vocabulary(config.vocabulary)->hash()));
+  }
+}
 
 Backend::~Backend() = default;
 
 void Backend::use_sensor(const SensorInfo& info) {
-  if (store_ && !store_->set_sensor(info)) ++store_failures_;
+  if (store_) store_->set_sensor(info);
 }
 
 void Backend::process(const Keyframe& keyframe) {
@@ -64,19 +82,13 @@ void Backend::process(const Keyframe& keyframe) {
     const StageTimer pgo(clock_, times_, Stage::kPgo);
     T_map_sensor = graph_.add(keyframe);
   }
-  if (!map_) {
-    const double voxel_m =
-        config_.map_voxel_m > 0 ? config_.map_voxel_m : voxel_from_median_range_m(keyframe);
-    map_.emplace(voxel_m, static_cast<std::size_t>(config_.map_max_points));
-  }
+  if (!map_) make_map(keyframe);
   map_->insert(T_map_sensor, config_.moving_objects ? moving_.standing(keyframe) : keyframe.points);
-  if (store_ && !store_->add(keyframe, T_map_sensor)) {
-    ++store_failures_;
-    not_stored_.insert(keyframe.id);
-  }
+  if (store_) store_->add(keyframe, T_map_sensor);
   if (loops_) look_for_loops(keyframe);
   if (graph_.tilted()) settle();
   store_changes();
+  keep_session();
   publish();
 }
 
@@ -84,10 +96,27 @@ void Backend::finish() {
   times_ = {};
   const StageTimer timer(clock_, times_, Stage::kBackend);
   loop_reports_.clear();
-  if (!loops_waiting_) return;
-  settle();
-  store_changes();
-  publish();
+  if (loops_waiting_) {
+    settle();
+    store_changes();
+    publish();
+  }
+  if (store_) store_->commit();
+}
+
+void Backend::keep_session() {
+  if (store_) store_->commit_if_due();
+}
+
+// The session says how the map was made of its keyframes.
+void Backend::make_map(const Keyframe& first) {
+  const double voxel_m =
+      config_.map_voxel_m > 0 ? config_.map_voxel_m : voxel_from_median_range_m(first);
+  map_.emplace(voxel_m, static_cast<std::size_t>(config_.map_max_points));
+  if (!store_) return;
+  store_->set_meta("map_voxel_m", fmt::format("{}", voxel_m));
+  store_->set_meta("map_max_points", fmt::format("{}", config_.map_max_points));
+  store_->set_meta("moving_objects", config_.moving_objects ? "left out" : "kept");
 }
 
 // A correction that no new loop asks for.
@@ -203,7 +232,7 @@ void Backend::correct(const std::vector<Pose>& before) {
     const Pose& T_map_sensor = graph_.poses()[i];
     anchors->push_back({node.segment, node.sequence, T_map_sensor * node.T_odom_sensor.inverse()});
     T_new_old.push_back(T_map_sensor * before[i].inverse());
-    if (!not_stored_.contains(node.id)) changes_.poses.emplace_back(node.id, T_map_sensor);
+    changes_.poses.emplace_back(node.id, T_map_sensor);
   }
   correction_ = {anchors->back().T_map_odom, correction_.epoch + 1, anchors};
   map_->move(T_new_old);
@@ -215,9 +244,7 @@ void Backend::store_changes() {
   for (const LoopReport& report : loop_reports_) {
     changes.events.push_back({report.stamp, "loop", to_json(report).dump()});
   }
-  // A correction or an edge comes with its report, but for those of finish().
-  if (changes.events.empty() && changes.poses.empty()) return;
-  if (!store_->apply(changes)) ++store_failures_;
+  store_->apply(changes);
 }
 
 void Backend::publish() {
@@ -225,6 +252,10 @@ void Backend::publish() {
   snapshot->keyframe_count = graph_.nodes().size();
   snapshot->epoch = correction_.epoch;
   snapshot_ = std::move(snapshot);
+}
+
+std::uint64_t Backend::keyframes_not_stored() const {
+  return store_ ? store_->missing_keyframes() : 0;
 }
 
 std::string_view Backend::store_error() const { return store_ ? store_->error() : ""; }

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <set>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -20,8 +19,8 @@
 #include "slam/map_correction.hpp"
 #include "slam/moving_points.hpp"
 #include "slam/pose_graph.hpp"
-#include "slam/session_store.hpp"
 #include "slam/stage_times.hpp"
+#include "slam/store/session_store.hpp"
 
 namespace glint::slam {
 
@@ -40,8 +39,11 @@ class Backend {
   /// Whose scans the keyframes that follow are of.
   void use_sensor(const SensorInfo& info);
   void process(const Keyframe& keyframe);
-  /// Nothing follows for now: loops that were not worth a correction each get one together.
+  /// Nothing follows for now: loops that were not worth a correction each get one together, and the
+  /// session is brought onto the disk.
   void finish();
+  /// To be called often while no keyframe comes: what the session holds reaches the disk in time.
+  void keep_session();
   [[nodiscard]] const MapCorrection& correction() const { return correction_; }
   /// The map now; immutable, to be handed to clients.
   [[nodiscard]] std::shared_ptr<const MapSnapshot> snapshot() const { return snapshot_; }
@@ -52,9 +54,11 @@ class Backend {
   [[nodiscard]] std::uint64_t loops_rejected() const { return loops_rejected_; }
   /// What the last call took (kPgo; kBackend is all of it).
   [[nodiscard]] const StageTimes& stage_times() const { return times_; }
-  /// Keyframes and sensors the session file could not take, and why the last one could not.
-  [[nodiscard]] std::uint64_t store_failures() const { return store_failures_; }
+  /// Writes of the session file that failed, and why the last one did; they are tried again.
+  [[nodiscard]] std::uint64_t store_failures() const { return store_ ? store_->failures() : 0; }
   [[nodiscard]] std::string_view store_error() const;
+  /// Keyframes that the session file lacks for it.
+  [[nodiscard]] std::uint64_t keyframes_not_stored() const;
 
  private:
   void look_for_loops(const Keyframe& keyframe);
@@ -65,6 +69,7 @@ class Backend {
   void report_restored(const LoopEdge& edge);
   void report_refused(const LoopEdge& edge, const char* reason);
   void correct(const std::vector<Pose>& before);
+  void make_map(const Keyframe& first);
   void store_changes();
   void publish();
 
@@ -79,13 +84,11 @@ class Backend {
   std::shared_ptr<const MapSnapshot> snapshot_;
   std::vector<LoopReport> loop_reports_;
   LargestCorrection last_correction_;
-  LoopChanges changes_;                 ///< For the session file, of this call.
-  bool loops_waiting_ = false;          ///< There are edges that poses were not optimised with.
-  std::set<std::uint64_t> not_stored_;  ///< Keyframes that the session file lacks.
-  SensorTime stamp_;                    ///< Of the last keyframe.
+  LoopChanges changes_;         ///< For the session file, of this call.
+  bool loops_waiting_ = false;  ///< There are edges that poses were not optimised with.
+  SensorTime stamp_;            ///< Of the last keyframe.
   std::uint64_t loops_rejected_ = 0;
   StageTimes times_;
-  std::uint64_t store_failures_ = 0;
 };
 
 }  // namespace glint::slam

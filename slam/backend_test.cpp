@@ -284,7 +284,9 @@ class BackendSession : public testing::Test {
 TEST_F(BackendSession, TheSessionHasTheLoopItsEventAndTheMovedKeyframes) {
   Backend backend({}, file_, {}, known_loops({{kRound, true_loop(0, kRound)}}));
   for (std::uint64_t k = 0; k <= kRound; ++k) backend.process(keyframe(k));
+  backend.finish();
   EXPECT_EQ(backend.store_failures(), 0U) << backend.store_error();
+  EXPECT_EQ(backend.keyframes_not_stored(), 0U);
   EXPECT_EQ(query("SELECT count(*) FROM edges WHERE kind='loop'"), "1");
   EXPECT_EQ(query("SELECT count(*) FROM events WHERE kind='loop'"), std::to_string(kRound + 2));
   EXPECT_NE(query("SELECT data FROM events ORDER BY id DESC LIMIT 1").find(R"("accepted":true)"),

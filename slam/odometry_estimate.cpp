@@ -22,4 +22,12 @@ std::string_view to_string(TrackingState state) {
   return "LOST";
 }
 
+std::optional<TrackingState> tracking_state_from(std::string_view name) {
+  using enum TrackingState;
+  for (const auto state : {kInit, kTracking, kDegraded, kLost, kLocalizing, kPaused}) {
+    if (name == to_string(state)) return state;
+  }
+  return std::nullopt;
+}
+
 }  // namespace glint::slam

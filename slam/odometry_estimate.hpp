@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "driver/core/pose.hpp"
@@ -16,6 +17,8 @@ namespace glint::slam {
 /// DEGRADED, TRACKING.
 enum class TrackingState { kInit, kTracking, kDegraded, kLost, kLocalizing, kPaused };
 std::string_view to_string(TrackingState state);
+/// Null for what is no state's name.
+std::optional<TrackingState> tracking_state_from(std::string_view name);
 
 /// What one scan says of the sensor's motion. Value type.
 struct OdometryEstimate {

@@ -37,5 +37,7 @@ void add_status(CLI::App& app);
 void add_pose(CLI::App& app);
 void add_watch(CLI::App& app);
 void add_map(CLI::App& app);
+void add_maps(CLI::App& app);
+void add_export(CLI::App& app);
 
 }  // namespace glint::cli

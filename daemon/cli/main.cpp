@@ -33,6 +33,8 @@ int run(int argc, char** argv) {
   add_pose(app);
   add_watch(app);
   add_map(app);
+  add_maps(app);
+  add_export(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

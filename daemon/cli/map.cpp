@@ -13,7 +13,7 @@
 #include "daemon/base64.hpp"
 #include "daemon/cli/client_command.hpp"
 #include "daemon/cli/command.hpp"
-#include "daemon/cli/ply_writer.hpp"
+#include "daemon/export/ply_writer.hpp"
 
 namespace glint::cli {
 namespace {

@@ -13,7 +13,6 @@
 
 #include "daemon/cli/capture_input.hpp"
 #include "daemon/cli/command.hpp"
-#include "daemon/cli/ply_writer.hpp"
 #include "daemon/cli/replay_run.hpp"
 #include "daemon/cli/report.hpp"
 #include "daemon/cli/scan_table.hpp"
@@ -22,6 +21,7 @@
 #include "daemon/cli/trajectory_writer.hpp"
 #include "daemon/clock_settings.hpp"
 #include "daemon/config.hpp"
+#include "daemon/export/ply_writer.hpp"
 #include "daemon/replay_pacer.hpp"
 #include "daemon/version.hpp"
 #include "pcap/pcap_source.hpp"
@@ -219,8 +219,8 @@ void show_progress(std::uint64_t scans) {
 void end_progress(const ReplayResult& result, const ReplayCommand& command) {
   if (isatty(STDERR_FILENO) != 0) std::cerr << '\r';
   if (!result.source_error.empty()) std::cerr << "glint: " << result.source_error << '\n';
-  if (result.store_failures > 0) {
-    std::cerr << "glint: " << result.store_failures << " keyframes are missing in "
+  if (result.keyframes_not_stored > 0) {
+    std::cerr << "glint: " << result.keyframes_not_stored << " keyframes are missing in "
               << (command.out / "session.glint").string() << ": " << result.store_error << '\n';
   }
 }

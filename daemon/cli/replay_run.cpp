@@ -50,7 +50,7 @@ class Replay {
     result_.loops_rejected = backend_.loops_rejected();
     result_.correction = backend_.correction();
     result_.packets = assembler_.counters();
-    result_.store_failures = backend_.store_failures();
+    result_.keyframes_not_stored = backend_.keyframes_not_stored();
     result_.store_error = backend_.store_error();
     result_.wall_s = static_cast<double>(clock_.monotonic_ns() - start_ns) * kSecondsPerNs;
     return std::move(result_);
@@ -93,6 +93,7 @@ class Replay {
       }
     }
     result_.stages.add(times);
+    backend_.keep_session();
     const std::uint64_t scans = result_.estimates.size();
     if (scans >= kFirstSample && is_sample(scans)) {
       result_.sample_images.push_back(frontend_.images());

@@ -31,7 +31,7 @@ struct ReplayResult {
   std::vector<slam::LoopReport> loops;  ///< Every candidate, in order.
   std::uint64_t loops_accepted = 0;
   std::uint64_t loops_rejected = 0;
-  std::uint64_t store_failures = 0;
+  std::uint64_t keyframes_not_stored = 0;
   std::string store_error;
   std::string source_error;  ///< Why the capture could not be read to its end; empty if it was.
   bool interrupted = false;

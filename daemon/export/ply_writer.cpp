@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright 2026 The Glint Authors
-#include "daemon/cli/ply_writer.hpp"
+#include "daemon/export/ply_writer.hpp"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#include "slam/store/session_map.hpp"
+
+#include <charconv>
+#include <limits>
+#include <string>
+
+#include "slam/moving_points.hpp"
+
+namespace glint::slam {
+namespace {
+
+// What sessions that do not say were made with: the middle of what back ends choose.
+constexpr double kUsualVoxel_m = 0.1;
+constexpr double kFinestVoxel_m = 0.01;
+constexpr double kCoarsestVoxel_m = 100.0;
+
+double number_in(const std::string& text, double otherwise) {
+  double value = otherwise;
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return value;
+}
+
+double voxel_of(const SessionReader& session) {
+  const double voxel_m = number_in(session.meta("map_voxel_m"), kUsualVoxel_m);
+  return voxel_m >= kFinestVoxel_m && voxel_m <= kCoarsestVoxel_m ? voxel_m : kUsualVoxel_m;
+}
+
+}  // namespace
+
+std::shared_ptr<const MapSnapshot> session_map(const SessionReader& session, double voxel_m) {
+  const bool moving_objects = session.meta("moving_objects") != "kept";
+  // Memory is the limit here: the map is not for a daemon that must go on.
+  VoxelMap map(voxel_m > 0.0 ? voxel_m : voxel_of(session),
+               std::numeric_limits<std::size_t>::max());
+  MovingPoints moving;
+  std::size_t keyframes = 0;
+  session.for_each_keyframe([&](SessionKeyframe&& of_session) {
+    const Keyframe& keyframe = of_session.keyframe;
+    map.insert(of_session.T_map_sensor,
+               moving_objects ? moving.standing(keyframe) : keyframe.points);
+    ++keyframes;
+  });
+  auto snapshot = map.snapshot();
+  snapshot->keyframe_count = keyframes;
+  return snapshot;
+}
+
+}  // namespace glint::slam
