@@ -88,7 +88,6 @@ Json Api::status() const {
   ServiceStatus service;
   service.instance = instance_;
   service.source_name = runtime_.options().source_name;
-  service.session_file = runtime_.options().session_file.string();
   service.uptime_ns = steady_now_ns() - start_ns_;
   service.scan_period_ns = runtime_.scan_period_ns();
   if (sensor_ != nullptr) {

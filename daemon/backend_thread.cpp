@@ -2,7 +2,10 @@
 // Copyright 2026 The Glint Authors
 #include "daemon/backend_thread.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <utility>
+#include <vector>
 
 #include "daemon/protocol_pose.hpp"
 
@@ -11,16 +14,31 @@ namespace {
 
 constexpr std::chrono::milliseconds kWait{100};
 
+// What has happened to the map.
+const char* action_between(const slam::MapCorrection& before, const slam::MapCorrection& now) {
+  if (before.placed && !now.placed) return "loaded";
+  return before.placed ? "corrected" : "located";
+}
+
 }  // namespace
 
-BackendThread::BackendThread(const Config& config, const std::filesystem::path& session_file,
-                             slam::LoopSource loops, Crossings& crossings, Heartbeat& heartbeat,
-                             EventLog& events)
-    : crossings_(crossings),
+BackendThread::BackendThread(const Config& config, SessionPlan plan,
+                             std::function<slam::LoopSource()> make_loops, Crossings& crossings,
+                             Heartbeat& heartbeat, EventLog& events)
+    : config_(config.slam),
+      make_loops_(std::move(make_loops)),
+      plan_(std::move(plan)),
+      crossings_(crossings),
       heartbeat_(heartbeat),
       events_(events),
-      backend_(config.slam, session_file, stage_clock(), std::move(loops)) {
-  publish();
+      backend_(make_backend()) {
+  tell({});
+}
+
+std::unique_ptr<slam::Backend> BackendThread::make_backend() const {
+  return std::make_unique<slam::Backend>(config_, plan_.file, stage_clock(),
+                                         make_loops_ ? make_loops_() : slam::LoopSource{},
+                                         plan_.earlier);
 }
 
 void BackendThread::run() {
@@ -34,9 +52,9 @@ void BackendThread::run() {
     if (result == PopResult::kItem) process(keyframe);
     keep_session();
   }
-  const std::uint32_t epoch = backend_.correction().epoch;
-  backend_.finish();
-  tell(epoch);
+  const slam::MapCorrection before = backend_->correction();
+  backend_->finish();
+  tell(before);
   correct_last_snapshot();
   heartbeat_.finish();
 }
@@ -45,51 +63,77 @@ void BackendThread::look_at_sensor() {
   std::shared_ptr<const SensorInfo> sensor = crossings_.sensor.load();
   if (sensor == sensor_) return;
   sensor_ = std::move(sensor);
-  backend_.use_sensor(*sensor_);
+  backend_->use_sensor(*sensor_);
 }
 
 void BackendThread::process(const slam::Keyframe& keyframe) {
-  const std::uint32_t epoch = backend_.correction().epoch;
-  backend_.process(keyframe);
+  const slam::MapCorrection before = backend_->correction();
+  backend_->process(keyframe);
   const auto wall_ns = [&](slam::Stage stage) {
-    return backend_.stage_times().wall_ns[static_cast<std::size_t>(stage)];
+    return backend_->stage_times().wall_ns[static_cast<std::size_t>(stage)];
   };
   duration_.add(wall_ns(slam::Stage::kBackend));
   pgo_duration_.add(wall_ns(slam::Stage::kPgo));
-  tell(epoch);
+  tell(before);
+  if (backend_->searching_s() > plan_.search_s) begin_another_map();
+}
+
+// The sensor is nowhere in the map that it was to go on with.
+void BackendThread::begin_another_map() {
+  const slam::MapCorrection before = backend_->correction();
+  const std::vector<slam::Keyframe> waiting = backend_->give_up_search();
+  plan_.earlier.clear();
+  plan_.file = plan_.otherwise;
+  backend_ = make_backend();
+  backend_->begin_at_epoch(before.epoch + 1);
+  if (sensor_) backend_->use_sensor(*sensor_);
+  spdlog::warn("the sensor was not found in the map for {:.0f} s: a map of its own is begun",
+               plan_.search_s);
+  events_.post({"map", 0, {{"action", "begun"}, {"map_epoch", before.epoch + 1}}});
+  for (const slam::Keyframe& keyframe : waiting) {
+    backend_->process(keyframe);
+    heartbeat_.beat();
+  }
+  tell(before);
 }
 
 // Keyframes may be long in coming, but what the disk does not take is told at once.
 void BackendThread::keep_session() {
-  const std::uint64_t failures = backend_.store_failures();
-  backend_.keep_session();
-  if (backend_.store_failures() != failures) publish();
+  const std::uint64_t failures = backend_->store_failures();
+  backend_->keep_session();
+  if (backend_->store_failures() != failures) publish();
 }
 
 // Odometry has ended, and what it was told last it may not have seen.
 void BackendThread::correct_last_snapshot() {
   const std::shared_ptr<const Snapshot> last = crossings_.snapshot.load();
-  if (last->correction.epoch == backend_.correction().epoch) return;
+  if (last->correction.epoch == backend_->correction().epoch) return;
   auto corrected = std::make_shared<Snapshot>(*last);
-  corrected->correction = backend_.correction();
+  corrected->correction = backend_->correction();
   crossings_.snapshot.store(corrected);
   events_.post({"epoch", 0, epoch_json(*corrected)});
 }
 
-void BackendThread::tell(std::uint32_t epoch_before) {
+void BackendThread::tell(const slam::MapCorrection& before) {
   publish();
-  for (const slam::LoopReport& report : backend_.loop_reports()) {
+  for (const slam::LoopReport& report : backend_->loop_reports()) {
     Json fields = Json::object();
     put_time(fields, report.stamp);
     fields.update(slam::to_json(report));
     events_.post({"loop", 0, std::move(fields)});
   }
-  if (backend_.correction().epoch == epoch_before) return;
-  crossings_.commands.post(backend_.correction());
-  const slam::MapSnapshot& map = *backend_.snapshot();
+  const slam::MapCorrection& now = backend_->correction();
+  if (now.placed == before.placed && now.confidence == before.confidence &&
+      now.epoch == before.epoch) {
+    return;
+  }
+  crossings_.commands.post(now);
+  if (now.epoch == before.epoch) return;
+  const slam::MapSnapshot& map = *backend_->snapshot();
   events_.post({"map",
                 0,
-                {{"map_epoch", map.epoch},
+                {{"action", action_between(before, now)},
+                 {"map_epoch", map.epoch},
                  {"revision", map.revision},
                  {"points", map.point_count},
                  {"keyframes", map.keyframe_count}}});
@@ -97,14 +141,15 @@ void BackendThread::tell(std::uint32_t epoch_before) {
 
 void BackendThread::publish() {
   auto state = std::make_shared<MapState>();
-  state->map = backend_.snapshot();
+  state->map = backend_->snapshot();
   if (state->map == nullptr) state->map = std::make_shared<const slam::MapSnapshot>();
   state->backend = duration_;
   state->pgo = pgo_duration_;
-  state->loops_accepted = backend_.loops_accepted();
-  state->loops_rejected = backend_.loops_rejected();
-  state->store_failures = backend_.store_failures();
-  state->store_error = backend_.store_error();
+  state->loops_accepted = backend_->loops_accepted();
+  state->loops_rejected = backend_->loops_rejected();
+  state->session_file = backend_->session_file().string();
+  state->store_failures = backend_->store_failures();
+  state->store_error = backend_->store_error();
   crossings_.map.store(std::move(state));
 }
 

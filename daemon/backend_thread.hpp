@@ -2,12 +2,14 @@
 // Copyright 2026 The Glint Authors
 #pragma once
 
-#include <filesystem>
+#include <functional>
+#include <memory>
 
 #include "daemon/config.hpp"
 #include "daemon/crossings.hpp"
 #include "daemon/event_log.hpp"
 #include "daemon/heartbeat.hpp"
+#include "daemon/session_plan.hpp"
 #include "slam/backend.hpp"
 
 namespace glint::daemon {
@@ -15,11 +17,11 @@ namespace glint::daemon {
 /// Body of the backend thread: keyframes to pose graph, map and session. Owned by that thread.
 class BackendThread {
  public:
-  /// `session_file`: empty for none; `loops` as Backend has it. @throws InputError when the file
-  /// cannot be created.
-  BackendThread(const Config& config, const std::filesystem::path& session_file,
-                slam::LoopSource loops, Crossings& crossings, Heartbeat& heartbeat,
-                EventLog& events);
+  /// `make_loops`: what Backend takes; empty for none. @throws InputError when the session cannot
+  /// be created, or gone on with.
+  BackendThread(const Config& config, SessionPlan plan,
+                std::function<slam::LoopSource()> make_loops, Crossings& crossings,
+                Heartbeat& heartbeat, EventLog& events);
 
   /// Until the keyframe queue is closed and empty.
   void run();
@@ -28,14 +30,19 @@ class BackendThread {
   void look_at_sensor();
   void process(const slam::Keyframe& keyframe);
   void keep_session();
-  void tell(std::uint32_t epoch_before);
+  [[nodiscard]] std::unique_ptr<slam::Backend> make_backend() const;
+  void begin_another_map();
+  void tell(const slam::MapCorrection& before);
   void correct_last_snapshot();
   void publish();
 
+  const slam::SlamConfig config_;
+  const std::function<slam::LoopSource()> make_loops_;
+  SessionPlan plan_;
   Crossings& crossings_;
   Heartbeat& heartbeat_;
   EventLog& events_;
-  slam::Backend backend_;
+  std::unique_ptr<slam::Backend> backend_;    ///< Never null.
   std::shared_ptr<const SensorInfo> sensor_;  ///< The one that the session file names.
   DurationStats duration_;
   DurationStats pgo_duration_;

@@ -66,6 +66,10 @@ struct Config {
     std::string directory = "auto";
     int trajectory_poses = 200'000;
   };
+  struct Map {
+    std::string on_start = "new";
+    double search_s = 60.0;
+  };
   struct Log {
     std::string level = "info";
   };
@@ -75,6 +79,7 @@ struct Config {
   slam::SlamConfig slam;
   Server server;
   State state;
+  Map map;
   Log log;
 };
 

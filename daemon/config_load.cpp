@@ -15,17 +15,10 @@
 namespace glint::daemon {
 namespace {
 
-/// Keys whose function comes with a later version; a mistake in spelling is not what happened.
-constexpr std::array<std::string_view, 1> kLaterKeys = {"map.on_start"};
-
 const ConfigKey& find_key(std::string_view name, const std::string& where) {
   const auto keys = config_keys();
   const auto found = std::ranges::find(keys, name, &ConfigKey::name);
   if (found != keys.end()) return *found;
-  if (std::ranges::find(kLaterKeys, name) != kLaterKeys.end()) {
-    throw ConfigError(
-        fmt::format("{}: '{}' is not supported by this version; remove it", where, name));
-  }
   const auto nearest = std::ranges::min_element(
       keys, {}, [&](const ConfigKey& key) { return edit_distance(name, key.name); });
   throw ConfigError(fmt::format("{}: unknown key '{}'; the nearest known key is '{}'", where, name,

@@ -128,8 +128,10 @@ TEST_F(ConfigTest, AMissingFileIsAnErrorThatNamesIt) {
   }
 }
 
-TEST_F(ConfigTest, AKeyOfALaterVersionIsSaidToBeOne) {
-  EXPECT_THAT(load_error("[map]\non_start = \"continue\"\n"), HasSubstr("not supported"));
+TEST_F(ConfigTest, AStartBeginsWithAnEmptyMapOrTheLatestOne) {
+  EXPECT_EQ(load_error("[map]\non_start = \"continue\"\n"), "");
+  EXPECT_EQ(config_.map.on_start, "continue");
+  EXPECT_THAT(load_error("[map]\non_start = \"resume\"\n"), HasSubstr("new|continue"));
 }
 
 TEST_F(ConfigTest, ThePresetIsAppliedBeforeOtherKeysWhereverItStands) {

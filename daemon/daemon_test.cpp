@@ -165,7 +165,7 @@ slam::LoopSource loop_at_second_keyframe() {
 TEST(DaemonTest, ALoopMovesTheMapFrameWithItsEpochAndLeavesTheOdometryFrame) {
   constexpr int kScans = 16;  // a keyframe each half metre, which is each tenth scan
   RuntimeOptions options;
-  options.loops = loop_at_second_keyframe();
+  options.loops = loop_at_second_keyframe;
   TestDaemon daemon({}, options);
   const auto packets = room_packets(daemon.info(), kScans);
   const auto expected = replay(daemon.info(), packets);
@@ -278,7 +278,7 @@ TEST(DaemonTest, TheSessionFileIsFinishedAtStop) {
   const auto file = std::filesystem::path(testing::TempDir()) / "daemon_test.glint";
   {
     RuntimeOptions options;
-    options.session_file = file;
+    options.session.file = file;
     TestDaemon daemon({}, options);
     daemon.feed(room_packets(daemon.info(), 2));
     ASSERT_TRUE(daemon.wait_for("get_status", [](const Json& s) { return has_poses(s, 2); }));

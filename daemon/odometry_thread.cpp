@@ -242,7 +242,7 @@ void OdometryThread::apply_commands() {
                             if (stream_) stream_->frontend.reset();
                           },
                           [&](const UseSensorCommand& use) { use_sensor(use); },
-                          [&](const slam::MapCorrection& c) { state_.correction = c; }},
+                          [&](const slam::MapCorrection& c) { take_correction(c); }},
                command);
   }
   if (commands.empty()) return;
@@ -252,10 +252,16 @@ void OdometryThread::apply_commands() {
   if (state_.correction.epoch != epoch) events_.post({"epoch", 0, epoch_json(state_)});
 }
 
+void OdometryThread::take_correction(const slam::MapCorrection& correction) {
+  state_.correction = correction;
+  if (stream_) stream_->frontend.set_searching(!correction.placed);
+}
+
 void OdometryThread::use_sensor(const UseSensorCommand& use) {
   state_.refused = {};
   if (!stream_) {
     stream_.emplace(use, config_, R_base_sensor_);
+    stream_->frontend.set_searching(!state_.correction.placed);
     return;
   }
   if (stream_change(*stream_->info, *use.info).empty()) {

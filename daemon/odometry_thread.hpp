@@ -67,6 +67,7 @@ class OdometryThread {
   void choose_load(double took_s);
   void hand_over_keyframe();
   void apply_commands();
+  void take_correction(const slam::MapCorrection& correction);
   void use_sensor(const UseSensorCommand& use);
   void flush();
   void publish_counters();

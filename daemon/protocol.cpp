@@ -13,6 +13,8 @@ namespace {
 /// The name of one of this server's own codes; empty for JSON-RPC's.
 std::string_view code_name(int code) {
   switch (code) {
+    case kNotTracking:
+      return "NOT_TRACKING";
     case kTooLarge:
       return "TOO_LARGE";
     case kBusy:

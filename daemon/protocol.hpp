@@ -28,6 +28,7 @@ constexpr int kMethodNotFound = -32601;
 constexpr int kInvalidParams = -32602;
 constexpr int kInternalError = -32603;
 // This server's; `data.code` names them.
+constexpr int kNotTracking = -32001;
 constexpr int kTooLarge = -32002;
 constexpr int kBusy = -32003;
 constexpr int kOutOfRange = -32006;

@@ -93,10 +93,16 @@ void put_clock(Json& out, ClockSource source, HostTime host_time, std::int64_t s
                  Json{{"from_ns", from}, {"to_ns", to}});
 }
 
+[[noreturn]] void refuse_unplaced() {
+  throw RpcError(kNotTracking,
+                 "the sensor has not been found in the map yet; ask for frame \"odom\"", "frame");
+}
+
 Json past_pose_json(const Snapshot& snapshot, SensorTime stamp, PoseFrames frames,
                     const PoseContext& context) {
   const auto record = pose_at(snapshot.history, stamp);
   if (!record) refuse_time(snapshot.history, stamp);
+  if (frames.map && !snapshot.correction.placed) refuse_unplaced();
   Json out = head_json(record->state, frames);
   put_time(out, stamp);
   put_clock(out, snapshot.clock_source, record->host_time, record->clock_sigma_ns);
@@ -148,10 +154,18 @@ Json newest_pose_json(const Snapshot& snapshot, PoseFrames frames, const PoseCon
   put_clock(out, snapshot.clock_source, snapshot.host_time, snapshot.clock.sigma_ns);
   out["age_ms"] = static_cast<double>(now_ns - snapshot.arrival_ns) * 1e-6;
   out["stale"] = is_stale(snapshot, now_ns, context.scan_period_ns);
-  put_pose(out, newest_in_frames(estimate.T_odom_sensor, snapshot, frames, context));
+  const bool known = snapshot.correction.placed || !frames.map;
+  if (known) {
+    put_pose(out, newest_in_frames(estimate.T_odom_sensor, snapshot, frames, context));
+    put_covariance(out, estimate.covariance, frames, context);
+  }
   put_velocity(out, estimate.velocity, frames, context);
-  put_covariance(out, estimate.covariance, frames, context);
-  put_map_correction(out, snapshot.correction.T_map_odom, snapshot.correction.epoch);
+  if (snapshot.correction.placed) {
+    put_map_correction(out, snapshot.correction.T_map_odom, snapshot.correction.epoch);
+  } else {
+    out["map_epoch"] = snapshot.correction.epoch;  // Absent means unknown.
+    out["confidence"] = snapshot.correction.confidence;
+  }
   out["frame_id"] = estimate.frame_id;
   out["segment"] = estimate.segment;
   out["completeness"] = estimate.completeness;
@@ -170,7 +184,7 @@ Json get_pose(const Json& params, const Snapshot& snapshot, const PoseContext& c
   if (at) return past_pose_json(snapshot, *at, frames, context);
 
   Json out = newest_pose_json(snapshot, frames, context, now_ns);
-  if (predict_ms == 0.0 || !snapshot.estimate) return out;
+  if (predict_ms == 0.0 || !out.contains("p_m")) return out;
   const slam::OdometryEstimate& estimate = *snapshot.estimate;
   const Pose predicted = estimate.T_odom_sensor * se3_exp(estimate.velocity * (predict_ms * 1e-3));
   const std::int64_t ahead_ns = std::llround(predict_ms * 1e6);

@@ -193,6 +193,9 @@ Json status_json(const RuntimeStatus& runtime, const ServiceStatus& service, std
   out["clock"] = clock_json(snapshot);
   if (snapshot.imu.packets > 0) out["imu"] = imu_json(snapshot.imu);
   out["map_epoch"] = snapshot.correction.epoch;
+  if (!snapshot.correction.placed) {
+    out["localization"] = Json{{"confidence", snapshot.correction.confidence}};
+  }
   const slam::MapSnapshot& map = *runtime.map->map;
   out["map"] = Json{{"revision", map.revision},
                     {"tiles", map.tiles.size()},
@@ -205,7 +208,7 @@ Json status_json(const RuntimeStatus& runtime, const ServiceStatus& service, std
   out["queues"] =
       Json{{"packets", queue_json(runtime.packets)}, {"keyframes", queue_json(runtime.keyframes)}};
   out["source"] = service.source_name;
-  out["session_file"] = service.session_file;
+  out["session_file"] = runtime.map->session_file;
   if (!runtime.map->store_error.empty()) out["store_error"] = runtime.map->store_error;
   out["clients"] = service.clients;
   out["rss_mb"] = resident_mb();

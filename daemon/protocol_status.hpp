@@ -16,7 +16,6 @@ namespace glint::daemon {
 struct ServiceStatus {
   std::string instance;
   std::string source_name;
-  std::string session_file;
   std::int64_t uptime_ns = 0;
   std::int64_t scan_period_ns = 0;
   std::size_t clients = 0;

@@ -35,7 +35,9 @@ Json get_trajectory(const Json& params, const Snapshot& snapshot, const PoseCont
     begin = std::clamp(wanted, history.first(), history.end());
     skipped = begin > wanted ? begin - wanted : 0;
   }
-  const std::uint64_t end = std::min(history.end(), begin + kPagePoses);
+  // None is known in a map in which the sensor has not been found.
+  const bool known = snapshot.correction.placed || !frames.map;
+  const std::uint64_t end = known ? std::min(history.end(), begin + kPagePoses) : begin;
 
   Json poses = Json::array();
   for (std::uint64_t i = begin; i < end; ++i) {
@@ -60,7 +62,7 @@ Json get_trajectory(const Json& params, const Snapshot& snapshot, const PoseCont
   out["poses"] = std::move(poses);
   // Too slow a reader: these poses were no longer kept.
   if (skipped > 0) out["skipped"] = skipped;
-  if (end < history.end()) out["next_cursor"] = std::to_string(end);
+  if (known && end < history.end()) out["next_cursor"] = std::to_string(end);
   return out;
 }
 

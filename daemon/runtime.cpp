@@ -41,7 +41,7 @@ Runtime::Runtime(const std::optional<SensorInfo>& info, const Config& config,
       options_(std::move(options)),
       source_(std::move(source)),
       crossings_(packet_capacity(info, options_.lossless)),
-      backend_(config_, options_.session_file, options_.loops, crossings_, backend_heartbeat_,
+      backend_(config_, options_.session, options_.loops, crossings_, backend_heartbeat_,
                *options_.events) {
   if (info) use_sensor(*info);
 }

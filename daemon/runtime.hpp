@@ -17,6 +17,7 @@
 #include "daemon/event_log.hpp"
 #include "daemon/odometry_thread.hpp"
 #include "daemon/receive_thread.hpp"
+#include "daemon/session_plan.hpp"
 #include "driver/core/sensor_info.hpp"
 
 namespace glint::daemon {
@@ -25,10 +26,11 @@ struct RuntimeOptions {
   /// The source is a capture: nothing is dropped, the source waits for odometry, odometry for the
   /// back end.
   bool lossless = false;
-  std::filesystem::path session_file;  ///< Empty: no session is kept.
-  std::string source_name;             ///< For status: "udp:7502", "pcap:drive.pcap".
-  /// Finds places seen before; empty: none are looked for. Called on the backend thread.
-  slam::LoopSource loops;
+  SessionPlan session;
+  std::string source_name;  ///< For status: "udp:7502", "pcap:drive.pcap".
+  /// Makes what finds places seen before, for each map that is begun; empty: none are looked for.
+  /// Called on the backend thread.
+  std::function<slam::LoopSource()> loops;
   /// Where everyone posts events; never null.
   std::shared_ptr<EventLog> events = std::make_shared<EventLog>();
 };

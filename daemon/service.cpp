@@ -28,9 +28,9 @@ std::chrono::nanoseconds supervision_period() {
 }
 
 RuntimeOptions with_session_and_loops(RuntimeOptions options, const Config& config) {
-  options.session_file = new_session_file(config);
-  options.loops = slam::loops_by_appearance(config.slam);
-  if (options.session_file.empty()) {
+  options.session = plan_session(config);
+  options.loops = [slam = config.slam] { return slam::loops_by_appearance(slam); };
+  if (options.session.file.empty()) {
     spdlog::info("no session is kept: state.directory is not set");
   }
   return options;

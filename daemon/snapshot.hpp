@@ -70,6 +70,7 @@ struct MapState {
   DurationStats pgo;
   std::uint64_t loops_accepted = 0;
   std::uint64_t loops_rejected = 0;
+  std::string session_file;  ///< Empty: no session is kept, or none yet.
   std::uint64_t store_failures = 0;
   std::string store_error;
 };
@@ -80,13 +81,15 @@ inline bool is_stale(const Snapshot& snapshot, std::int64_t now_ns, std::int64_t
 }
 
 /// The state that clients are told at steady time `now_ns`: INIT before the first pose, PAUSED
-/// while paused, DEGRADED in place of TRACKING when the pose is stale, else the estimate's.
+/// while paused, LOCALIZING while its place in the map is looked for, DEGRADED in place of TRACKING
+/// when the pose is stale, else the estimate's.
 inline slam::TrackingState client_state(const Snapshot& snapshot, std::int64_t now_ns,
                                         std::int64_t scan_period_ns) {
   using State = slam::TrackingState;
   if (snapshot.paused) return State::kPaused;
   if (!snapshot.estimate) return State::kInit;
   const State state = snapshot.estimate->state;
+  if (state != State::kLost && !snapshot.correction.placed) return State::kLocalizing;
   const bool stale = is_stale(snapshot, now_ns, scan_period_ns);
   return state == State::kTracking && stale ? State::kDegraded : state;
 }

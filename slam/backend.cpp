@@ -52,23 +52,26 @@ std::unique_ptr<SessionStore> make_store(const std::filesystem::path& file,
 }  // namespace
 
 Backend::Backend(const SlamConfig& config, const std::filesystem::path& session_file, Clock clock,
-                 LoopSource loops)
+                 LoopSource loops, const std::filesystem::path& earlier)
     : config_(config),
+      session_file_(session_file),
       clock_(clock),
       loops_(config.loops ? std::move(loops) : LoopSource{}),
       graph_({config.pgo_gravity, config.loop_consistency}),
-      store_(make_store(session_file, config, clock)),
+      store_(earlier.empty() ? make_store(session_file, config, clock) : nullptr),
       snapshot_(std::make_shared<const MapSnapshot>()) {
   // Words of one vocabulary say nothing in another.
   if (store_ && loops_) {
     store_->set_meta("vocabulary_hash",
                      fmt::format("{:016x}", open_vocabulary(config.vocabulary)->hash()));
   }
+  if (!earlier.empty()) load(earlier);
 }
 
 Backend::~Backend() = default;
 
 void Backend::use_sensor(const SensorInfo& info) {
+  sensor_ = std::make_shared<const SensorInfo>(info);
   if (store_) store_->set_sensor(info);
 }
 
@@ -77,19 +80,28 @@ void Backend::process(const Keyframe& keyframe) {
   const StageTimer timer(clock_, times_, Stage::kBackend);
   loop_reports_.clear();
   stamp_ = keyframe.estimate.stamp;
-  Pose T_map_sensor;
+  if (search_) {
+    search_place(renumbered(keyframe));
+  } else if (!keyframe.probe) {
+    take(renumbered(keyframe));
+  }
+  store_changes();
+  keep_session();
+  publish();
+}
+
+// Into graph, map and session.
+void Backend::take(const Keyframe& keyframe) {
   {
     const StageTimer pgo(clock_, times_, Stage::kPgo);
-    T_map_sensor = graph_.add(keyframe);
+    graph_.add(keyframe);
   }
+  const Pose T_map_sensor = graph_.poses().back();
   if (!map_) make_map(keyframe);
   map_->insert(T_map_sensor, config_.moving_objects ? moving_.standing(keyframe) : keyframe.points);
   if (store_) store_->add(keyframe, T_map_sensor);
   if (loops_) look_for_loops(keyframe);
   if (graph_.tilted()) settle();
-  store_changes();
-  keep_session();
-  publish();
 }
 
 void Backend::finish() {
@@ -128,7 +140,7 @@ void Backend::settle() {
 }
 
 void Backend::look_for_loops(const Keyframe& keyframe) {
-  LoopSearch found = loops_(keyframe);
+  LoopSearch found = loops_.search(keyframe);
   for (LoopCandidate& candidate : found.candidates) {
     loop_reports_.push_back({stamp_, std::move(candidate), {}, {}, {}});
   }
@@ -230,11 +242,14 @@ void Backend::correct(const std::vector<Pose>& before) {
   for (std::size_t i = 0; i < before.size(); ++i) {
     const GraphNode& node = graph_.nodes()[i];
     const Pose& T_map_sensor = graph_.poses()[i];
-    anchors->push_back({node.segment, node.sequence, T_map_sensor * node.T_odom_sensor.inverse()});
+    if (node.segment >= first_segment_) {
+      anchors->push_back({node.segment - first_segment_, node.sequence,
+                          T_map_sensor * node.T_odom_sensor.inverse()});
+    }
     T_new_old.push_back(T_map_sensor * before[i].inverse());
     changes_.poses.emplace_back(node.id, T_map_sensor);
   }
-  correction_ = {anchors->back().T_map_odom, correction_.epoch + 1, anchors};
+  correction_ = {anchors->back().T_map_odom, correction_.epoch + 1, true, 1.0, anchors};
   map_->move(T_new_old);
 }
 
@@ -248,6 +263,7 @@ void Backend::store_changes() {
 }
 
 void Backend::publish() {
+  if (!map_) return;
   auto snapshot = map_->snapshot();
   snapshot->keyframe_count = graph_.nodes().size();
   snapshot->epoch = correction_.epoch;

@@ -15,11 +15,13 @@
 #include "slam/keyframe.hpp"
 #include "slam/loop_report.hpp"
 #include "slam/loop_source.hpp"
+#include "slam/loops/relocalizer.hpp"
 #include "slam/map.hpp"
 #include "slam/map_correction.hpp"
 #include "slam/moving_points.hpp"
 #include "slam/pose_graph.hpp"
 #include "slam/stage_times.hpp"
+#include "slam/store/session_reader.hpp"
 #include "slam/store/session_store.hpp"
 
 namespace glint::slam {
@@ -30,12 +32,29 @@ class Backend {
   /// `session_file`: where the session is kept; empty for none. @throws InputError if it cannot be
   /// created.
   /// `loops`: finds places seen before; empty for none.
+  /// `earlier`: a session whose map is gone on with; empty for none. The sensor may be anywhere in
+  /// it: keyframes are held back until their place is found, as correction().placed tells, and what
+  /// follows is in the frame of that map. `session_file` then begins with that session, or is
+  /// itself gone on with if it is the same; until then neither is written. @throws InputError where
+  /// it cannot be read.
   explicit Backend(const SlamConfig& config, const std::filesystem::path& session_file = {},
-                   Clock clock = {}, LoopSource loops = {});
+                   Clock clock = {}, LoopSource loops = {},
+                   const std::filesystem::path& earlier = {});
   ~Backend();
   Backend(const Backend&) = delete;
   Backend& operator=(const Backend&) = delete;
 
+  /// Before the first keyframe: the first epoch, when there was another map before.
+  void begin_at_epoch(std::uint32_t epoch) { correction_.epoch = epoch; }
+  /// Where the session is kept; empty while it is nowhere.
+  [[nodiscard]] std::filesystem::path session_file() const {
+    return store_ ? session_file_ : std::filesystem::path();
+  }
+  /// The keyframes held back so far, in their own numbers: for a back end without that map, when
+  /// the sensor is nowhere in it.
+  [[nodiscard]] std::vector<Keyframe> give_up_search();
+  /// Since the first keyframe whose place was looked for; zero when none is.
+  [[nodiscard]] double searching_s() const;
   /// Whose scans the keyframes that follow are of.
   void use_sensor(const SensorInfo& info);
   void process(const Keyframe& keyframe);
@@ -61,6 +80,21 @@ class Backend {
   [[nodiscard]] std::uint64_t keyframes_not_stored() const;
 
  private:
+  /// For the place of the sensor in a map that was there before.
+  struct PlaceSearch {
+    std::filesystem::path session;
+    Relocalizer relocalizer;
+    std::vector<Keyframe> waiting;  ///< That are to be built from once it is found.
+    std::optional<SensorTime> begin;
+  };
+
+  void load(const std::filesystem::path& session);
+  [[nodiscard]] Keyframe renumbered(const Keyframe& keyframe) const;
+  void restore(const SessionReader& session, Relocalizer& relocalizer);
+  void search_place(const Keyframe& keyframe);
+  void settle_down(const Relocation& found, const Pose& T_odom_sensor);
+  void continue_session(const std::filesystem::path& session);
+  void take(const Keyframe& keyframe);
   void look_for_loops(const Keyframe& keyframe);
   void settle();
   void take_loops(std::span<const LoopEdge> edges);
@@ -74,12 +108,18 @@ class Backend {
   void publish();
 
   const SlamConfig config_;
+  const std::filesystem::path session_file_;
   const Clock clock_;
   const LoopSource loops_;
   PoseGraph graph_;
   MovingPoints moving_;
   std::optional<VoxelMap> map_;  ///< Made with the first keyframe, whose ranges set the voxels.
   std::unique_ptr<SessionStore> store_;
+  std::shared_ptr<const SensorInfo> sensor_;  ///< For a session that is yet to be made.
+  std::optional<PlaceSearch> search_;         ///< While the sensor's place is not known.
+  /// What makes the numbers of keyframes and segments those of the map.
+  std::uint64_t first_keyframe_ = 0;
+  std::uint32_t first_segment_ = 0;
   MapCorrection correction_;
   std::shared_ptr<const MapSnapshot> snapshot_;
   std::vector<LoopReport> loop_reports_;

@@ -29,6 +29,9 @@ RegistrationOptions registration_options(const SlamConfig& config) {
   return options;
 }
 
+// Keyframes while the place in the map is looked for: three of them within a second.
+constexpr std::int64_t kProbeEvery_ns = 250'000'000;
+
 // The projection onto the axes along which surfaces leave the position open.
 Eigen::Matrix3d open_axes(const WeakAxes& weak_axes) {
   Eigen::Matrix3d open = Eigen::Matrix3d::Zero();
@@ -99,6 +102,8 @@ void Frontend::change_sensor(const SensorInfo& info) {
 void Frontend::add_imu(const ImuSample& sample) {
   if (impl_->config.gyro) impl_->measurements.push_back(sample);
 }
+
+void Frontend::set_searching(bool searching) { impl_->searching = searching; }
 
 void Frontend::set_load_level(LoadLevel level) { impl_->set_load_level(level); }
 
@@ -274,15 +279,32 @@ void Frontend::Impl::publish(const LidarScan& scan, const Pose& T_odom_scan) {
 
 void Frontend::Impl::make_keyframe(const LidarScan& scan) {
   // That a scan went without keypoints makes it no new place.
-  if (spared_last || !selector.select(estimate)) return;
+  if (spared_last) return;
+  if (selector.select(estimate)) {
+    take_keyframe_from(scan, false);
+  } else if (wants_probe()) {
+    take_keyframe_from(scan, true);
+  }
+}
+
+bool Frontend::Impl::wants_probe() const {
+  return searching && estimate.stamp - last_keyframe >= kProbeEvery_ns;
+}
+
+void Frontend::Impl::take_keyframe_from(const LidarScan& scan, bool probe) {
   // `state` is that of the end, or of the middle where it is a constant velocity.
   const ScanMotion motion = motion_about(scan.end_time, state);
   // A scan that is located at its middle moves as a whole from there to its end.
   const Pose T_end_scan = motion.at(current_time);
   keyframe.emplace();
-  keyframe->id = next_keyframe_id++;
+  keyframe->id = next_keyframe_id;
+  keyframe->probe = probe;
   keyframe->estimate = estimate;
-  keyframe->edge_covariance = covariance.take_since_keyframe();
+  last_keyframe = estimate.stamp;
+  if (!probe) {
+    ++next_keyframe_id;
+    keyframe->edge_covariance = covariance.take_since_keyframe();
+  }
   keyframe->gravity = gravity.felt();
   keyframe->features = reference.features;
   const Pose T_end_features = T_end_scan * reference.T_scan_features;

@@ -37,6 +37,9 @@ class Frontend {
   void add_imu(const ImuSample& sample);
   /// What is left out from the next scan on. Results depend on it, so that a replay never sets it.
   void set_load_level(LoadLevel level);
+  /// While its place in the map is looked for there is a keyframe four times a second, also at
+  /// rest: those that are no keyframes otherwise are marked as probes.
+  void set_searching(bool searching);
   /// The pose of one scan. Valid until the next call. Never throws on any scan of this sensor.
   const OdometryEstimate& process(const LidarScan& scan);
   /// The keyframe that the last scan gave, if any; a second call gives none.

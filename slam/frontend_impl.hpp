@@ -56,6 +56,8 @@ struct Frontend::Impl {
   void search_restart(const LidarScan& scan);
   void publish(const LidarScan& scan, const Pose& T_odom_scan);
   void make_keyframe(const LidarScan& scan);
+  bool wants_probe() const;
+  void take_keyframe_from(const LidarScan& scan, bool probe);
   void become_reference(const LidarScan& scan, ReferenceScan& slot, const Pose& T_odom_scan);
 
   // How its motion is found (frontend_motion.cpp).
@@ -87,6 +89,8 @@ struct Frontend::Impl {
   Matcher matcher;
   Registrar registrar;
   KeyframeSelector selector;
+  bool searching = false;                 // For its place in the map.
+  SensorTime last_keyframe;               // Or probe.
   std::optional<MapOptimizer> optimizer;  // None where all its elements are switched off.
 
   std::vector<ImuSample> measurements;  // That came since the last scan, or belong after it.

@@ -33,6 +33,9 @@ struct Keyframe {
   Eigen::Matrix<double, 6, 6> edge_covariance = Eigen::Matrix<double, 6, 6>::Zero();
   /// Where up is at estimate.stamp, where an IMU told.
   std::optional<FeltGravity> gravity;
+  /// Taken only to find its place in the map: nothing is to be built from it, and its id is that of
+  /// the keyframe that comes next.
+  bool probe = false;
 };
 
 }  // namespace glint::slam

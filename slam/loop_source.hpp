@@ -3,6 +3,8 @@
 #pragma once
 
 #include <functional>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "slam/keyframe.hpp"
@@ -17,8 +19,22 @@ struct LoopSearch {
   std::vector<LoopCandidate> candidates;  ///< Looked into at this keyframe, with the edges' own.
 };
 
-/// Takes each keyframe, in order, and tells which place seen before it shows. Called by the back
-/// end only.
-using LoopSource = std::function<LoopSearch(const Keyframe& keyframe)>;
+/// What knows the places of keyframes. Called by the back end only.
+struct LoopSource {
+  LoopSource() = default;
+  /// One that knows of no keyframes but those that it is asked about.
+  template <class Search>
+  requires std::is_invocable_r_v<LoopSearch, Search&, const Keyframe&> LoopSource(
+      Search search_loops)
+      : search(std::move(search_loops)) {}  // NOLINT(*-explicit-*)
+
+  /// Takes each keyframe, in order, and tells which place seen before it shows. Empty: none is
+  /// looked for.
+  std::function<LoopSearch(const Keyframe& keyframe)> search;
+  /// Takes the keyframes of a session that is gone on with, in order, before all others.
+  std::function<void(const Keyframe& keyframe)> remember;
+
+  explicit operator bool() const { return static_cast<bool>(search); }
+};
 
 }  // namespace glint::slam

@@ -23,6 +23,11 @@ struct MapCorrection {
   /// For what comes after the last anchor: the newest poses, and segments that begin later.
   Pose T_map_odom;
   std::uint32_t epoch = 0;
+  /// False while the sensor is looked for in a map that was there before: nothing is known of
+  /// T_map_odom then.
+  bool placed = true;
+  /// How near the search has come to a place that it believes in, 0 to 1.
+  double confidence = 1.0;
   /// Of the keyframes until the jump, by segment and sequence; null: T_map_odom holds for all.
   std::shared_ptr<const std::vector<CorrectionAnchor>> anchors;
 

@@ -60,6 +60,19 @@ const Pose& PoseGraph::add(const Keyframe& keyframe) {
   return poses_.back();
 }
 
+void PoseGraph::add_at(const Keyframe& keyframe, const Pose& T_map_sensor) {
+  const bool tilted = tilted_;
+  add(keyframe);
+  poses_.back() = T_map_sensor;
+  tilted_ = tilted;  // By the pose that it would have had.
+}
+
+void PoseGraph::restore_loop(const LoopEdge& loop) {
+  if (!graph_edge(loop)) return;
+  add_loop(loop);
+  loops_.back().settled = true;
+}
+
 void PoseGraph::take_gravity(const Keyframe& keyframe) {
   const OdometryEstimate& estimate = keyframe.estimate;
   if (!sights_.empty() && sights_.back().segment == estimate.segment) {

@@ -41,6 +41,12 @@ class PoseGraph {
 
   /// Adds a keyframe, ids rising, where odometry carries the last one's pose: T_map_sensor.
   const Pose& add(const Keyframe& keyframe);
+  /// The same for one that is known to be at T_map_sensor: the first of a segment, or one of a
+  /// session that is gone on with.
+  void add_at(const Keyframe& keyframe, const Pose& T_map_sensor);
+  /// A loop of such a session, with which its poses were found. Nothing happens if its keyframes or
+  /// its covariance are none.
+  void restore_loop(const LoopEdge& loop);
   [[nodiscard]] const std::vector<GraphNode>& nodes() const { return nodes_; }
   /// T_map_sensor of each node.
   [[nodiscard]] std::span<const Pose> poses() const { return poses_; }

@@ -37,6 +37,7 @@ struct ReplayCommand {
   std::filesystem::path config_file;
   std::vector<std::string> settings;
   std::filesystem::path truth;
+  std::filesystem::path map;
   std::string rate = "max";
   std::uint64_t frames = 0;
 };
@@ -241,6 +242,7 @@ void run(const ReplayCommand& command) {
   options.loops = slam::loops_by_appearance(config.slam);
   options.R_base_sensor = config.mount.T_base_sensor.rotation;
   options.session_file = command.out / "session.glint";
+  options.earlier_session = command.map;
   options.max_scans = command.frames;
   options.on_scan = [](std::uint64_t scans) {
     show_progress(scans);
@@ -280,6 +282,8 @@ void add_replay(CLI::App& app) {
   sub->add_option("--set", command->settings, "Set one value: key=value; may be given again");
   sub->add_option("--rate", command->rate, "max, or a multiple of the recorded speed");
   sub->add_option("--truth", command->truth, "True trajectory (TUM) to compare with");
+  sub->add_option("--map", command->map,
+                  "Session (.glint) whose map to go on with; the sensor may begin anywhere in it");
   sub->add_option("--frames", command->frames, "Stop after this many scans");
   sub->callback([command] { run(*command); });
 }

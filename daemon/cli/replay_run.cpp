@@ -22,8 +22,10 @@ class Replay {
         imu_format_(info),
         assembler_(info),
         frontend_(info, options.slam, clock_, options.R_base_sensor),
-        backend_(options.slam, options.session_file, clock_, options.loops) {
+        backend_(options.slam, options.session_file, clock_, options.loops,
+                 options.earlier_session) {
     backend_.use_sensor(info);
+    frontend_.set_searching(!backend_.correction().placed);
   }
 
   ReplayResult run(PacketSource& source) {
@@ -85,6 +87,7 @@ class Replay {
     decode_times_ = {};
     if (const auto keyframe = frontend_.take_keyframe()) {
       backend_.process(*keyframe);
+      frontend_.set_searching(!backend_.correction().placed);
       take_loops();
       for (const slam::Stage stage : {slam::Stage::kPgo, slam::Stage::kBackend}) {
         const auto i = static_cast<std::size_t>(stage);

@@ -49,7 +49,8 @@ struct ReplayOptions {
   slam::LoopSource loops;                                             ///< As Backend has it.
   Eigen::Quaterniond R_base_sensor = Eigen::Quaterniond::Identity();  ///< As Frontend has it.
   std::filesystem::path session_file;
-  std::uint64_t max_scans = 0;  ///< 0: all.
+  std::filesystem::path earlier_session;  ///< Whose map is gone on with; empty for none.
+  std::uint64_t max_scans = 0;            ///< 0: all.
   /// Called after each scan with the number of scans so far; false ends the replay.
   std::function<bool(std::uint64_t)> on_scan;
 };

@@ -57,6 +57,13 @@ LoopDetector::LoopDetector(std::shared_ptr<const Vocabulary> vocabulary, bool de
   if (density) density_.emplace();
 }
 
+void LoopDetector::remember(const Keyframe& keyframe) {
+  append(keyframe);
+  last_bag_ = vocabulary_->bag_of(places_.back().descriptors);
+  index_.add(last_bag_);
+  if (density_) density_->keep(places_);
+}
+
 std::vector<LoopEdge> LoopDetector::add(const Keyframe& keyframe) {
   candidates_.clear();
   append(keyframe);

@@ -36,6 +36,8 @@ class LoopDetector {
   /// it is at a place seen before; at most one, and none in keyframes that follow a loop closely.
   /// After a loop that came as a surprise, those of the keyframes that bore it out follow it.
   std::vector<LoopEdge> add(const Keyframe& keyframe);
+  /// The same for a keyframe of a session before, which is to be found but not looked for.
+  void remember(const Keyframe& keyframe);
   /// What the last add() looked at closely, whether it became a loop or not.
   [[nodiscard]] const std::vector<LoopCandidate>& candidates() const { return candidates_; }
 

@@ -13,12 +13,14 @@ LoopSource loops_by_appearance(const SlamConfig& config) {
   // Shared, for a function must be copyable.
   const auto detector =
       std::make_shared<LoopDetector>(open_vocabulary(config.vocabulary), config.loop_density);
-  return [detector](const Keyframe& keyframe) {
+  LoopSource source = [detector](const Keyframe& keyframe) {
     LoopSearch search;
     search.edges = detector->add(keyframe);
     search.candidates = detector->candidates();
     return search;
   };
+  source.remember = [detector](const Keyframe& keyframe) { detector->remember(keyframe); };
+  return source;
 }
 
 }  // namespace glint::slam

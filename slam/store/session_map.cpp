@@ -22,17 +22,17 @@ double number_in(const std::string& text, double otherwise) {
   return value;
 }
 
-double voxel_of(const SessionReader& session) {
+}  // namespace
+
+double session_voxel_m(const SessionReader& session) {
   const double voxel_m = number_in(session.meta("map_voxel_m"), kUsualVoxel_m);
   return voxel_m >= kFinestVoxel_m && voxel_m <= kCoarsestVoxel_m ? voxel_m : kUsualVoxel_m;
 }
 
-}  // namespace
-
 std::shared_ptr<const MapSnapshot> session_map(const SessionReader& session, double voxel_m) {
   const bool moving_objects = session.meta("moving_objects") != "kept";
   // Memory is the limit here: the map is not for a daemon that must go on.
-  VoxelMap map(voxel_m > 0.0 ? voxel_m : voxel_of(session),
+  VoxelMap map(voxel_m > 0.0 ? voxel_m : session_voxel_m(session),
                std::numeric_limits<std::size_t>::max());
   MovingPoints moving;
   std::size_t keyframes = 0;

@@ -9,6 +9,9 @@
 
 namespace glint::slam {
 
+/// The edge of the voxels of its map.
+double session_voxel_m(const SessionReader& session);
+
 /// The map of a session: made of its keyframes as the back end made its own, but with the poses
 /// that they have in the end. `voxel_m`: edge of its voxels; 0 for the session's own.
 /// @throws InputError as SessionReader.

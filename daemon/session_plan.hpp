@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#pragma once
+
+#include <filesystem>
+
+#include "daemon/config.hpp"
+
+namespace glint::daemon {
+
+/// Which map a run begins with, and where its session goes. Value type.
+struct SessionPlan {
+  std::filesystem::path file;     ///< Where the session is kept; empty: nowhere.
+  std::filesystem::path earlier;  ///< Whose map is gone on with, also `file` itself; empty: none.
+  /// For a session of its own, when the sensor is nowhere in that map for `search_s`.
+  std::filesystem::path otherwise;
+  double search_s = 60.0;
+};
+
+/// What map.on_start asks for: of the sessions in state.directory the latest that can be read and
+/// has keyframes; those that cannot are logged, and left as they are. @throws ConfigError as
+/// new_session_file().
+SessionPlan plan_session(const Config& config);
+
+}  // namespace glint::daemon

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+//
+// How a back end goes on with the map of an earlier session.
+#include <algorithm>
+#include <charconv>
+#include <utility>
+
+#include "slam/backend.hpp"
+#include "slam/loops/vocabulary.hpp"
+#include "slam/store/session_copy.hpp"
+#include "slam/store/session_map.hpp"
+
+namespace glint::slam {
+namespace {
+
+// What the way between a scan and the keyframe before it may err by.
+constexpr double kBetween_m = 0.01;
+constexpr double kBetween_rad = 0.002;
+
+// What a scan sees, as what the last keyframe until then would: its number is that of the keyframe
+// that follows the scan, if the scan is none.
+LoopEdge edge_to_keyframe(const PlaceSighting& sighting, std::span<const Keyframe> keyframes) {
+  auto at = std::ranges::upper_bound(keyframes, sighting.edge.to, {}, &Keyframe::id);
+  const auto is_it = [&](const Keyframe& keyframe) {
+    const Pose between = keyframe.estimate.T_odom_sensor.inverse() * sighting.T_odom_sensor;
+    return between.translation_m.isZero(0.0);
+  };
+  if (at != keyframes.begin()) --at;
+  if (at != keyframes.begin() && at->id == sighting.edge.to && !is_it(*at)) --at;
+  const Pose T_scan_keyframe = sighting.T_odom_sensor.inverse() * at->estimate.T_odom_sensor;
+  LoopEdge edge = sighting.edge;
+  edge.to = at->id;
+  edge.T_from_to = sighting.edge.T_from_to * T_scan_keyframe;
+  const Eigen::Matrix<double, 6, 6> back = adjoint(T_scan_keyframe.inverse());
+  Twist between;
+  between.head<3>().setConstant(kBetween_m * kBetween_m);
+  between.tail<3>().setConstant(kBetween_rad * kBetween_rad);
+  edge.covariance = back * sighting.edge.covariance * back.transpose();
+  edge.covariance += Eigen::Matrix<double, 6, 6>(between.asDiagonal());
+  return edge;
+}
+
+}  // namespace
+
+void Backend::load(const std::filesystem::path& session) {
+  const SessionReader reader(session);
+  PlaceSearch search{session, Relocalizer(open_vocabulary(config_.vocabulary)), {}, {}};
+  restore(reader, search.relocalizer);
+  search_.emplace(std::move(search));
+  correction_.placed = false;
+  correction_.confidence = 0.0;
+  ++correction_.epoch;
+  publish();
+}
+
+void Backend::restore(const SessionReader& session, Relocalizer& relocalizer) {
+  const double voxel_m = session_voxel_m(session);
+  map_.emplace(voxel_m, static_cast<std::size_t>(config_.map_max_points));
+  session.for_each_keyframe([&](SessionKeyframe&& stored) {
+    const Keyframe& keyframe = stored.keyframe;
+    graph_.add_at(keyframe, stored.T_map_sensor);
+    map_->insert(stored.T_map_sensor,
+                 config_.moving_objects ? moving_.standing(keyframe) : keyframe.points);
+    if (loops_.remember) loops_.remember(keyframe);
+    relocalizer.remember(keyframe, stored.T_map_sensor);
+    first_keyframe_ = keyframe.id + 1;
+    first_segment_ = keyframe.estimate.segment + 1;
+  });
+  for (const LoopEdge& loop : session.loop_edges()) graph_.restore_loop(loop);
+}
+
+Keyframe Backend::renumbered(const Keyframe& keyframe) const {
+  Keyframe out = keyframe;
+  out.id += first_keyframe_;
+  out.estimate.segment += first_segment_;
+  return out;
+}
+
+void Backend::search_place(const Keyframe& keyframe) {
+  if (!search_->begin) search_->begin = keyframe.estimate.stamp;
+  if (!keyframe.probe) search_->waiting.push_back(keyframe);
+  const auto found = search_->relocalizer.locate(keyframe);
+  correction_.confidence = search_->relocalizer.confidence();
+  if (!found || search_->waiting.empty()) return;
+  for (const LoopCandidate& candidate : search_->relocalizer.candidates()) {
+    if (candidate.accepted) loop_reports_.push_back({stamp_, candidate, {}, {}, {}});
+  }
+  settle_down(*found, keyframe.estimate.T_odom_sensor);
+}
+
+// What was held back goes where the scan of `T_odom_sensor` was found.
+void Backend::settle_down(const Relocation& found, const Pose& T_odom_sensor) {
+  const PlaceSearch search = std::move(*search_);
+  search_.reset();
+  continue_session(search.session);
+  const Pose T_map_odom = found.T_map_sensor * T_odom_sensor.inverse();
+  for (const Keyframe& keyframe : search.waiting) {
+    const Pose T_map_sensor = T_map_odom * keyframe.estimate.T_odom_sensor;
+    graph_.add_at(keyframe, T_map_sensor);
+    map_->insert(T_map_sensor,
+                 config_.moving_objects ? moving_.standing(keyframe) : keyframe.points);
+    if (store_) store_->add(keyframe, T_map_sensor);
+    if (loops_.remember) loops_.remember(keyframe);
+  }
+  std::vector<LoopEdge> edges;
+  for (const PlaceSighting& sighting : found.sightings) {
+    const LoopEdge edge = edge_to_keyframe(sighting, search.waiting);
+    const auto same = [&](const LoopEdge& e) { return e.from == edge.from && e.to == edge.to; };
+    if (std::ranges::none_of(edges, same)) edges.push_back(edge);
+  }
+  loop_reports_.clear();
+  take_loops(edges);
+  correct({graph_.poses().begin(), graph_.poses().end()});
+}
+
+// The session goes on in a file of its own, unless it is the same one.
+void Backend::continue_session(const std::filesystem::path& session) {
+  if (session_file_.empty()) return;
+  std::error_code ignored;
+  if (!std::filesystem::equivalent(session, session_file_, ignored)) {
+    copy_session(session, session_file_, clock_);
+  }
+  store_ = std::make_unique<SessionStore>(session_file_,
+                                          SessionStoreOptions{.continues = true, .clock = clock_});
+  if (sensor_) store_->set_sensor(*sensor_);
+}
+
+std::vector<Keyframe> Backend::give_up_search() {
+  if (!search_) return {};
+  std::vector<Keyframe> waiting = std::move(search_->waiting);
+  search_.reset();
+  for (Keyframe& keyframe : waiting) {
+    keyframe.id -= first_keyframe_;
+    keyframe.estimate.segment -= first_segment_;
+  }
+  return waiting;
+}
+
+double Backend::searching_s() const {
+  if (!search_ || !search_->begin) return 0.0;
+  return static_cast<double>(stamp_ - *search_->begin) * kSecondsPerNs;
+}
+
+}  // namespace glint::slam

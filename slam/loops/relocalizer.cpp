@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright 2026 The Glint Authors
+#include "slam/loops/relocalizer.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "slam/loops/density_search.hpp"
+#include "slam/loops/look_alike.hpp"
+
+namespace glint::slam {
+namespace {
+
+// Similarity below which a place is not looked at: unlike that of two scans in a row it says little
+// by itself.
+constexpr double kLeastSimilarity = 0.01;
+// Keyframes of the map this near to a likelier one (in number) show the same.
+constexpr std::size_t kRegionReach = 3;
+constexpr std::size_t kMostMatched = 10;
+constexpr std::size_t kMostFits = 4;
+// Keyframes on either side whose points make the surfaces around a place, and whose keypoints
+// stand beside its own.
+constexpr std::size_t kAround = 5;
+constexpr std::size_t kBeside = 5;
+// Scans that must agree; so many are remembered, over so much way.
+constexpr std::size_t kAgreeing = 3;
+constexpr std::size_t kMostScans = 16;
+constexpr double kMemory_m = 8.0;
+// One keypoints' cube that shows something else is forgiven to so many scans.
+constexpr int kScansPerContradiction = 6;
+// Another place is out when it has less than this share of the keypoints found, or a cube against
+// it in each scan.
+constexpr double kRivalShare = 0.8;
+// By how much two scans' places may differ from what odometry says.
+constexpr double kApart_m = 0.3;
+constexpr double kApartShare = 0.03;
+constexpr double kApart_rad = 0.07;
+
+std::size_t numbers_apart(std::size_t a, std::size_t b) { return a > b ? a - b : b - a; }
+
+}  // namespace
+
+Relocalizer::Relocalizer(std::shared_ptr<const Vocabulary> vocabulary)
+    : vocabulary_(std::move(vocabulary)), index_(vocabulary_->word_count()) {}
+
+void Relocalizer::remember(const Keyframe& keyframe, const Pose& T_map_sensor) {
+  Place& place = places_.emplace_back(make_place(keyframe));
+  place.T_odom_sensor = T_map_sensor;
+  index_.add(vocabulary_->bag_of(place.descriptors));
+}
+
+void Relocalizer::begin_anew() {
+  scans_.clear();
+  candidates_.clear();
+  confidence_ = 0.0;
+}
+
+std::optional<Relocation> Relocalizer::locate(const Keyframe& keyframe) {
+  if (keyframe.estimate.segment != segment_) begin_anew();
+  segment_ = keyframe.estimate.segment;
+  candidates_.clear();
+  const Place current = make_place(keyframe);
+  Scan scan{current.T_odom_sensor, 0.0, {}};
+  if (!scans_.empty()) {
+    const Scan& last = scans_.back();
+    scan.path_m =
+        last.path_m + (scan.T_odom_sensor.translation_m - last.T_odom_sensor.translation_m).norm();
+  }
+  std::erase_if(scans_, [&](const Scan& s) { return scan.path_m - s.path_m > kMemory_m; });
+  if (scans_.size() == kMostScans) scans_.pop_front();
+  for (const std::size_t entry : likeliest(vocabulary_->bag_of(current.descriptors))) {
+    judge(entry, current, candidates_.emplace_back(), scan);
+    if (scan.fits.size() == kMostFits) break;
+  }
+  scans_.push_back(std::move(scan));
+  return decide();
+}
+
+// The places most like it, none next to a likelier one.
+std::vector<std::size_t> Relocalizer::likeliest(const BagOfWords& bag) {
+  std::vector<ScoredPlace> found = index_.query(bag, places_.size(), kLeastSimilarity);
+  std::ranges::stable_sort(found, std::ranges::greater{}, &ScoredPlace::similarity);
+  std::vector<std::size_t> entries;
+  for (const ScoredPlace& place : found) {
+    const auto same = [&](std::size_t better) {
+      return numbers_apart(better, place.entry) <= kRegionReach;
+    };
+    if (std::ranges::any_of(entries, same)) continue;
+    entries.push_back(place.entry);
+    if (entries.size() == kMostMatched) break;
+  }
+  return entries;
+}
+
+void Relocalizer::judge(std::size_t entry, const Place& current, LoopCandidate& candidate,
+                        Scan& scan) {
+  const Place& older = places_[entry];
+  const Consensus start = verifier_.match(older, current, candidate);
+  if (!candidate.reason.empty()) return;
+  Fit fit;
+  fit.candidate = candidates_.size() - 1;
+  fit.T_map_sensor = older.T_odom_sensor * start.T_reference_current;
+  if (std::ranges::any_of(scan.fits, [&](const Fit& f) { return agree(scan, f, scan, fit); })) {
+    candidate.reason = "another keyframe of the same place is more alike";
+    return;
+  }
+  if (!verifier_.registered(older, places_around(places_, entry, kAround), current, start,
+                            candidate, fit.edge)) {
+    return;
+  }
+  fit.T_map_sensor = older.T_odom_sensor * fit.edge.T_from_to;
+  const std::vector<Place> near = nearest(fit.T_map_sensor);
+  fit.there = compare_places(near.front(), near, current,
+                             near.front().T_odom_sensor.inverse() * fit.T_map_sensor);
+  fit.here = compare_places(current, {&current, 1}, near.front(),
+                            fit.T_map_sensor.inverse() * near.front().T_odom_sensor);
+  scan.fits.push_back(std::move(fit));
+}
+
+// The places nearest to it, the nearest first.
+std::vector<Place> Relocalizer::nearest(const Pose& T_map_sensor) const {
+  std::vector<std::pair<double, std::size_t>> order;
+  order.reserve(places_.size());
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    order.emplace_back(
+        (places_[i].T_odom_sensor.translation_m - T_map_sensor.translation_m).squaredNorm(), i);
+  }
+  const auto end = order.begin() + static_cast<std::ptrdiff_t>(std::min(kBeside, order.size()));
+  std::partial_sort(order.begin(), end, order.end());
+  std::vector<Place> places;
+  places.reserve(kBeside);
+  for (auto at = order.begin(); at != end; ++at) places.push_back(places_[at->second]);
+  return places;
+}
+
+bool Relocalizer::agree(const Scan& a, const Fit& fit_a, const Scan& b, const Fit& fit_b) const {
+  const Pose T_a_b = a.T_odom_sensor.inverse() * b.T_odom_sensor;
+  const Pose apart = (fit_a.T_map_sensor * T_a_b).inverse() * fit_b.T_map_sensor;
+  const double way_m = std::abs(a.path_m - b.path_m);
+  return apart.translation_m.norm() < kApart_m + kApartShare * way_m &&
+         so3_log(apart.rotation).norm() < kApart_rad;
+}
+
+// What the scans say of the place at which the last of them would be there.
+Relocalizer::Hypothesis Relocalizer::gather(const Scan& of, const Fit& fit) const {
+  Hypothesis place;
+  for (std::size_t i = 0; i < scans_.size(); ++i) {
+    const auto same = [&](const Fit& other) { return agree(scans_[i], other, of, fit); };
+    const auto found = std::ranges::find_if(scans_[i].fits, same);
+    if (found == scans_[i].fits.end()) continue;
+    place.fits.emplace_back(i, &*found);
+    place.contradictions_there += found->there.contradictions;
+    place.contradictions_here += found->here.contradictions;
+  }
+  return place;
+}
+
+// A place that is seen again shows next to nothing that does not belong there. What stands beside
+// a map's keyframe one scan alone may not see well.
+bool Relocalizer::credible(const Hypothesis& place) {
+  const auto scans = static_cast<int>(place.fits.size());
+  return place.contradictions_there * kScansPerContradiction <= scans &&
+         place.contradictions_here * 2 <= scans;
+}
+
+// Whether the scans that fit both do not show for certain which of the two it is.
+bool Relocalizer::rivals(const Hypothesis& place, const Hypothesis& other) {
+  double share = 0.0;
+  double share_of_other = 0.0;
+  int common = 0;
+  int against = 0;
+  for (const auto& [scan, fit] : place.fits) {
+    for (const auto& [other_scan, other_fit] : other.fits) {
+      if (scan != other_scan) continue;
+      ++common;
+      share += fit->there.confirmed;
+      share_of_other += other_fit->there.confirmed;
+      against += other_fit->there.contradictions - fit->there.contradictions;
+    }
+  }
+  return common > 0 && against < common && share_of_other > kRivalShare * share;
+}
+
+std::optional<Relocation> Relocalizer::decide() {
+  confidence_ = 0.0;
+  const Scan& last = scans_.back();
+  for (const Fit& fit : last.fits) {
+    LoopCandidate& candidate = candidates_[fit.candidate];
+    const Hypothesis place = gather(last, fit);
+    const double share = static_cast<double>(place.fits.size()) / kAgreeing;
+    if (!credible(place)) {
+      candidate.reason = "the places show different things";
+      continue;
+    }
+    confidence_ = std::max(confidence_, std::min(1.0, share));
+    if (place.fits.size() < kAgreeing) {
+      candidate.reason = "not yet borne out by other scans";
+    } else if (has_rival(place)) {
+      candidate.reason = "another place fits as well";
+    } else {
+      candidate.accepted = true;
+      confidence_ = 1.0;
+      Relocation relocation{fit.T_map_sensor, {}};
+      for (const auto& [scan, one] : place.fits) {
+        relocation.sightings.push_back({one->edge, scans_[scan].T_odom_sensor});
+      }
+      return relocation;
+    }
+  }
+  return std::nullopt;
+}
+
+bool Relocalizer::has_rival(const Hypothesis& place) const {
+  const auto is_of_place = [&](const Fit& fit) {
+    return std::ranges::any_of(place.fits, [&](const auto& own) { return own.second == &fit; });
+  };
+  return std::ranges::any_of(scans_, [&](const Scan& scan) {
+    return std::ranges::any_of(scan.fits, [&](const Fit& fit) {
+      return !is_of_place(fit) && rivals(place, gather(scan, fit));
+    });
+  });
+}
+
+}  // namespace glint::slam
