@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kMostPatches = 60;
 // With fewer, new ones are looked for in each scan: of those in motion a good third looks alike, a
-// dozen of which is needed. With 30 a tunnel of 16 beams was DEGRADED for half of the way.
+// dozen of which is needed. With 30 a drive in a tunnel with 16 beams ended DEGRADED.
 constexpr std::size_t kEnoughToSpare = 45;
 constexpr int kSectors = 8;
 constexpr int kMostInSector = 12;
