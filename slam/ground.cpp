@@ -41,7 +41,7 @@ std::optional<GroundPlane> GroundFinder::find(std::span<Eigen::Vector3f> points_
                                               std::size_t* ground_count) {
   *ground_count = 0;
   if (!height_m_ && options_.sensor_height_m > 0) height_m_ = options_.sensor_height_m;
-  const std::optional<GroundPlane> plane = find_plane(points_m, up);
+  std::optional<GroundPlane> plane = find_plane(points_m, up);
   if (!plane) {
     if (++missed_scans_ >= kPatience_scans) reset();
     return std::nullopt;
