@@ -190,7 +190,7 @@ constexpr std::array kKeys{
               "Most times that a scan's points look for their surfaces anew."},
     ConfigKey{
         "slam.load_level", &at<&Config::slam, &SlamConfig::load_level>, 0, 0, "",
-        "auto|none|keypoints|surface_points|keypoints_every_second",
+        "auto|none|patches|keypoints|surface_points|keypoints_every_second",
         "What is left out where the machine is too slow, each with what stands before it. auto: "
         "as much as a live stream needs; in a replay nothing."},
     ConfigKey{"slam.keyframe_distance_m", &at<&Config::slam, &SlamConfig::keyframe_distance_m>,

@@ -57,7 +57,7 @@ struct Snapshot {
   ImuStatus imu;
   std::uint64_t paused_scans = 0;                       ///< Scans not used because of a pause.
   slam::LoadLevel load_level = slam::LoadLevel::kFull;  ///< What odometry leaves out now.
-  /// Scans of which something was left out, by what; see slam::kLoadLevelNames.
+  /// Scans of which something was to be left out, by what; see slam::kLoadLevelNames.
   std::array<std::uint64_t, slam::kLoadLevels> shed_scans{};
   std::uint64_t dropped_keyframes = 0;  ///< The back end was too slow for them.
   StageStats stages;

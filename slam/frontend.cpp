@@ -112,7 +112,9 @@ void Frontend::Impl::set_load_level(LoadLevel level) {
   load_level = level;
   const auto share = [&](LoadLevel from, int all) { return level >= from ? all / 2 : all; };
   extractor.set_most(share(LoadLevel::kFewerKeypoints, config.orb_features));
-  if (optimizer) optimizer->set_plane_points(share(LoadLevel::kFewerPoints, config.plane_points));
+  if (!optimizer) return;
+  optimizer->set_sparing_patches(level >= LoadLevel::kFewerPatches);
+  optimizer->set_plane_points(share(LoadLevel::kFewerPoints, config.plane_points));
 }
 
 const StageTimes& Frontend::stage_times() const { return impl_->times; }

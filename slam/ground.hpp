@@ -28,7 +28,8 @@ struct GroundPlane {
 };
 
 /// Finds the ground in a scan: a plane at about the sensor's height below it and nearly level
-/// [Du & Beltrame 2023, sec. III-B], by RANSAC. Deterministic. Thread-compatible.
+/// [Du & Beltrame 2023, sec. III-B], by RANSAC. A height that it found by itself is looked for anew
+/// once no ground was there for some seconds. Deterministic. Thread-compatible.
 class GroundFinder {
  public:
   explicit GroundFinder(GroundOptions options) : options_(options) {}
@@ -38,19 +39,27 @@ class GroundFinder {
   std::optional<GroundPlane> find(std::span<Eigen::Vector3f> points_m, const Eigen::Vector3d& up,
                                   std::size_t* ground_count);
   /// Forgets the height that it found by itself.
-  void reset() { height_m_.reset(); }
+  void reset() {
+    height_m_.reset();
+    missed_scans_ = 0;
+  }
 
  private:
+  std::optional<GroundPlane> find_plane(std::span<const Eigen::Vector3f> points_m,
+                                        const Eigen::Vector3d& up);
   void collect_candidates(std::span<const Eigen::Vector3f> points_m, const Eigen::Vector3d& up);
   std::optional<GroundPlane> sample_planes(const Eigen::Vector3d& up);
   [[nodiscard]] std::optional<GroundPlane> refine(const GroundPlane& start) const;
   [[nodiscard]] bool plausible(const GroundPlane& plane, const Eigen::Vector3d& up) const;
   [[nodiscard]] bool stands_out(const GroundPlane& plane) const;
-  [[nodiscard]] int count(const GroundPlane& plane) const;
+  [[nodiscard]] int count(const GroundPlane& plane,
+                          const std::vector<Eigen::Vector3d>& points_m) const;
 
   GroundOptions options_;
   std::optional<double> height_m_;  ///< Running.
+  int missed_scans_ = 0;            ///< Since a plane passed.
   std::vector<Eigen::Vector3d> candidates_;
+  std::vector<Eigen::Vector3d> above_;  ///< Just too high to be candidates.
 };
 
 }  // namespace glint::slam

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "slam/patch_gate.hpp"
 #include "slam/recent_map.hpp"
 #include "slam/voxel_plane_map.hpp"
 
@@ -25,32 +26,8 @@ constexpr double kUnit_m2 = 0.02 * 0.02;
 // Median length of a vector with that deviation along each axis; what the best keypoints reach.
 constexpr double kMedianToSigma = 0.65;
 constexpr double kBestKeypoint_m = 0.02;
-// So many patches, in so many of eight sectors, are believed rather than keypoints that are off by
-// more than this along a weak axis.
-constexpr int kFewestPatches = 12;
-constexpr int kFewestPatchSectors = 3;
-constexpr double kContradicting_m = 0.08;
-constexpr double kBelievedChiSquared = 3.84;
 // With fewer residuals there is nothing to be said.
 constexpr std::size_t kFewestJointTerms = 30;
-
-bool speak(const PatchVotes& votes) {
-  return votes.patches >= kFewestPatches && votes.sectors >= kFewestPatchSectors;
-}
-
-// Lines that run along a weak axis look everywhere as if the sensor stood: what contradicts the
-// motion so far is not believed (chi^2, 95 %).
-bool agree(const Pose& found, const PosePrior& prior, const WeakAxes& axes) {
-  const Eigen::Vector3d off_m =
-      found.rotation.conjugate() * (found.translation_m - prior.T_odom_scan.translation_m);
-  return std::ranges::all_of(axes, [&](const WeakAxis& weak) {
-    if (weak.rotation) return true;
-    const Eigen::Vector3d axis = found.rotation.conjugate() * weak.axis;
-    const double information = axis.dot(prior.information.topLeftCorner<3, 3>() * axis);
-    const double along_m = off_m.dot(axis);
-    return along_m * along_m * information < kBelievedChiSquared;
-  });
-}
 
 PlaneFeatureOptions plane_options(const SlamConfig& config) {
   PlaneFeatureOptions options;
@@ -176,24 +153,16 @@ MapOptimization MapOptimizer::optimize(const Features& features, const std::vect
   outcome.patch_terms = votes_.patches;
   outcome.covariance = unit_variance_m2(result) * result.hessian().inverse();
   outcome.ok = outcome.covariance.allFinite();
-  judge(outcome.weak_axes, pose, prior && prior->turn_is_measured);
+  judge_axes(outcome.weak_axes, votes_, points_, pose, prior && prior->turn_is_measured);
   weak_before_ = outcome.weak_axes;
   return outcome;
-}
-
-// Which of the axes nothing tells of.
-void MapOptimizer::judge(WeakAxes& axes, const Pose& pose, bool turn_is_measured) const {
-  for (WeakAxis& axis : axes) {
-    const bool told = axis.rotation ? turn_is_measured : speak(votes_);
-    axis.critical = !told && !carried_by_points(axis, points_, pose);
-  }
 }
 
 // Where the patches look most alike, if that can be.
 Pose MapOptimizer::place_by_patches(const Pose& pose, const WeakAxes& weak,
                                     const std::optional<PosePrior>& prior) {
   const Pose found = patches_->search(pose, weak);
-  patches_agree_ = !prior || agree(found, *prior, weak);
+  patches_agree_ = !prior || agrees_with_motion(found, *prior, weak);
   return patches_agree_ ? found : pose;
 }
 
@@ -202,7 +171,7 @@ void MapOptimizer::ask_patches(const Pose& pose, const WeakAxes& weak, JointTerm
   terms.patches = votes_.term;
   terms.patches->hessian *= kUnit_m2;
   terms.patches->gradient *= kUnit_m2;
-  if (speak(votes_)) drop_contradicting(weak, pose);
+  if (outvote_keypoints(votes_)) drop_contradicting(weak, pose, points_);
 }
 
 // Of a residual of unit weight: what the weights stand for, or as the residuals show.
@@ -226,16 +195,6 @@ void MapOptimizer::weigh_keypoints(const Pose& pose) {
   const double factor = kUnit_m2 / (sigma_m * sigma_m) * config_.ba_weight / keypoint_weight_;
   for (PointTerm& term : points_) term.weight *= factor;
   keypoint_weight_ *= factor;
-}
-
-// Keypoints at the ends of what runs along a weak axis go with the sensor.
-void MapOptimizer::drop_contradicting(const WeakAxes& weak, const Pose& pose) {
-  std::erase_if(points_, [&](const PointTerm& term) {
-    const Eigen::Vector3d error_m = pose * term.point_m - term.fixed_m;
-    return std::ranges::any_of(weak, [&](const WeakAxis& axis) {
-      return !axis.rotation && std::abs(error_m.dot(axis.axis)) > kContradicting_m;
-    });
-  });
 }
 
 // Along weak axes the surfaces' noise would outvote keypoints and prior: it gets no vote.

@@ -63,6 +63,10 @@ class MapOptimizer {
                 const Pose& T_odom_scan, const Twist& velocity);
   /// About so many points on surfaces are taken from the next scans.
   void set_plane_points(int points) { extractor_.set_wanted(points); }
+  /// Whether new pieces of the image are looked for in every second scan only, where enough are.
+  void set_sparing_patches(bool sparing) {
+    if (patches_) patches_->set_sparing(sparing);
+  }
   /// Forgets map and window.
   void reset();
 
@@ -77,8 +81,6 @@ class MapOptimizer {
   [[nodiscard]] Pose place_by_patches(const Pose& pose, const WeakAxes& weak,
                                       const std::optional<PosePrior>& prior);
   void ask_patches(const Pose& pose, const WeakAxes& weak, JointTerms& terms);
-  void drop_contradicting(const WeakAxes& weak, const Pose& pose);
-  void judge(WeakAxes& axes, const Pose& pose, bool turn_is_measured) const;
   void associate_keypoints(const Features& features, const std::vector<Match>& matches,
                            const Pose& pose);
   void drop_displaced(const Eigen::Vector3d& turn_radps);

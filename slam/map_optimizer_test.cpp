@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "slam/test_box_room.hpp"
+#include "slam/test_painted_tunnel.hpp"
 
 namespace glint::slam {
 namespace {
@@ -121,6 +122,51 @@ TEST_F(MapOptimizerTest, LargeRebuildsLeaveTheResultToTheScansAlone) {
     return x_m;
   };
   EXPECT_EQ(walk(), walk());
+}
+
+// In a round tunnel with rings on its wall, which alone tell the way along it.
+class MapOptimizerInTunnel : public MapOptimizerTest {
+ protected:
+  void observe_at(double x_m) {
+    test::see_tunnel(info_, *lut_, along(x_m), test::rings, images_);
+    optimizer_->observe(images_, still_, Eigen::Vector3d::UnitZ());
+  }
+  static Pose along(double x_m) { return {Eigen::Quaterniond::Identity(), {x_m, 0.4, -0.5}}; }
+  // Of a scan at 0.2 m, for one that the motion so far leads to 0, as sure as that.
+  MapOptimization optimize_at_20_cm(double sigma_m) {
+    PosePrior prior;
+    prior.T_odom_scan = along(0.0);
+    prior.information.diagonal().head<3>().setConstant(1.0 / (sigma_m * sigma_m));
+    prior.information.diagonal().tail<3>().setConstant(1e6);
+    prior.turn_is_measured = true;
+    start(config_);
+    for (int i = 0; i < 4; ++i) {
+      observe_at(0.0);
+      optimizer_->optimize({}, {}, along(0.0), prior);
+      optimizer_->remember({}, {}, along(0.0), Twist::Zero());
+    }
+    observe_at(0.2);
+    return optimizer_->optimize({}, {}, along(0.0), prior);
+  }
+
+  const std::shared_ptr<const XyzLut> lut_ = std::make_shared<XyzLut>(info_);
+  const std::vector<Pose> still_{static_cast<std::size_t>(info_.columns_per_frame)};
+};
+
+TEST_F(MapOptimizerInTunnel, PatchesThatAgreeWithTheMotionTellTheWay) {
+  const MapOptimization result = optimize_at_20_cm(0.2);
+  ASSERT_TRUE(result.ok);
+  EXPECT_FALSE(result.weak_axes.empty());
+  EXPECT_FALSE(result.weak_axes.any_critical());
+  EXPECT_NEAR(result.T_odom_scan.translation_m.x(), 0.2, 0.02);
+}
+
+TEST_F(MapOptimizerInTunnel, PatchesThatContradictTheMotionAreNotBelieved) {
+  const MapOptimization result = optimize_at_20_cm(0.05);
+  ASSERT_TRUE(result.ok);
+  EXPECT_EQ(result.patch_terms, 0);
+  EXPECT_TRUE(result.weak_axes.any_critical());
+  EXPECT_NEAR(result.T_odom_scan.translation_m.x(), 0.0, 0.02);
 }
 
 }  // namespace

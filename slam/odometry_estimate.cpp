@@ -19,7 +19,7 @@ std::string_view to_string(TrackingState state) {
     case TrackingState::kPaused:
       return "PAUSED";
   }
-  return "LOST";
+  return "UNKNOWN";
 }
 
 std::optional<TrackingState> tracking_state_from(std::string_view name) {

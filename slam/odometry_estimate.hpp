@@ -16,6 +16,7 @@ namespace glint::slam {
 /// How far a pose can be trusted. Precedence when several apply: PAUSED, LOST, LOCALIZING, INIT,
 /// DEGRADED, TRACKING.
 enum class TrackingState { kInit, kTracking, kDegraded, kLost, kLocalizing, kPaused };
+/// "UNKNOWN" for what is none of them.
 std::string_view to_string(TrackingState state);
 /// Null for what is no state's name.
 std::optional<TrackingState> tracking_state_from(std::string_view name);

@@ -45,6 +45,8 @@ class PatchTracker {
   /// Takes leave of patches that are out of sight, old or no longer alike, and takes new ones that
   /// tell the way along the weak axes. Without any such axis all are given up.
   void renew(const Pose& T_odom_scan, const WeakAxes& axes);
+  /// Whether new ones are looked for in every second scan only, while there are enough.
+  void set_sparing(bool sparing) { sparing_ = sparing; }
   void clear() { patches_.clear(); }
   [[nodiscard]] std::size_t size() const { return patches_.size(); }
 
@@ -87,6 +89,8 @@ class PatchTracker {
   std::vector<int> shift_;
   std::vector<Patch> patches_;
   std::vector<Candidate> candidates_;
+  bool sparing_ = false;
+  bool spared_last_ = false;  ///< In the last scan no new ones were looked for.
   const ScanImages* images_ = nullptr;
   std::span<const Pose> T_reference_column_;
 };

@@ -6,53 +6,24 @@
 
 #include <Eigen/LU>
 #include <cmath>
-#include <functional>
 #include <memory>
 
 #include "slam/test_box_room.hpp"
+#include "slam/test_painted_tunnel.hpp"
 
 namespace glint::slam {
 namespace {
 
-constexpr double kRadius_m = 3.0;
+using test::rings;
 
-// Brightness of the wall, by the way along the tunnel and the angle about its axis.
-using Paint = std::function<double(double x_m, double angle_rad)>;
-
-// A ring each 3 m: no corner anywhere.
-double rings(double x_m, double /*angle_rad*/) {
-  const double off_m = std::remainder(x_m, 3.0);
-  return 128.0 - 90.0 * std::exp(-off_m * off_m / (2.0 * 0.06 * 0.06));
-}
 double lines_along(double /*x_m*/, double angle_rad) {
   return 128.0 + 90.0 * std::sin(3.0 * angle_rad);
 }
 
 class PatchTrackerTest : public testing::Test {
  protected:
-  // In a round tunnel along x.
-  void see(const Pose& T_tunnel_sensor, const Paint& paint) {
-    images_.range_mm = {info_.pixels_per_column, info_.columns_per_frame};
-    images_.brightness = {info_.pixels_per_column, info_.columns_per_frame};
-    for (int row = 0; row < info_.pixels_per_column; ++row) {
-      const int shift = info_.pixel_shift_by_row[static_cast<std::size_t>(row)];
-      for (int m = 0; m < info_.columns_per_frame; ++m) {
-        const int u = (m + shift) % info_.columns_per_frame;
-        const Eigen::Vector3d ray = T_tunnel_sensor.rotation * lut_->direction(row, m) * 1000.0;
-        const Eigen::Vector2d at_m = T_tunnel_sensor.translation_m.tail<2>();
-        const Eigen::Vector2d across = ray.tail<2>();
-        const double a = across.squaredNorm();
-        const double b = at_m.dot(across);
-        const double range_m =
-            (-b + std::sqrt(b * b + a * (kRadius_m * kRadius_m - at_m.squaredNorm()))) / a;
-        const Eigen::Vector3d wall_m = T_tunnel_sensor.translation_m + range_m * ray;
-        const bool seen = range_m < 60.0;
-        images_.range_mm(row, u) =
-            seen ? static_cast<std::uint32_t>(std::lround(1000.0 * range_m)) : 0U;
-        images_.brightness(row, u) = static_cast<std::uint8_t>(
-            seen ? std::lround(paint(wall_m.x(), std::atan2(wall_m.z(), wall_m.y()))) : 128);
-      }
-    }
+  void see(const Pose& T_tunnel_sensor, const test::Paint& paint) {
+    test::see_tunnel(info_, *lut_, T_tunnel_sensor, paint, images_);
     tracker_.observe(images_, {});
   }
   static Pose pose(double x_m) {
@@ -112,6 +83,16 @@ TEST_F(PatchTrackerTest, WhatLooksOtherwiseIsGivenUp) {
   EXPECT_EQ(tracker_.votes(pose(0.0)).patches, 0);
   tracker_.renew(pose(0.0), along_the_tunnel());
   EXPECT_EQ(tracker_.size(), 0U);
+}
+
+TEST_F(PatchTrackerTest, SparingItTakesNewOnesAtOnceWhereThereAreFew) {
+  tracker_.set_sparing(true);
+  for (int scan = 0; scan < 4; ++scan) {
+    // Each time the rings of before are elsewhere.
+    see(pose(scan), rings);
+    tracker_.renew(pose(0.0), along_the_tunnel());
+    EXPECT_GE(tracker_.size(), 20U) << scan;
+  }
 }
 
 }  // namespace
