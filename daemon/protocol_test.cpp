@@ -91,7 +91,8 @@ class PoseJsonTest : public testing::Test {
     e.covariance.setIdentity();
     e.state = slam::TrackingState::kTracking;
     snapshot_.arrival_ns = kArrivalNs;
-    snapshot_.correction = {{so3_exp({0, 0, 0.5}), {10, 0, 0}}, 3, {}};
+    snapshot_.correction.T_map_odom = {so3_exp({0, 0, 0.5}), {10, 0, 0}};
+    snapshot_.correction.epoch = 3;
     context_.T_base_sensor = {so3_exp({0, 0.3, 0}), {0.2, 0.0, 0.9}};
     context_.scan_period_ns = 100'000'000;
   }
