@@ -28,6 +28,7 @@ class BackendThread {
   void look_at_sensor();
   void process(const slam::Keyframe& keyframe);
   void keep_session();
+  [[nodiscard]] bool commit_session();
   void tell(std::uint32_t epoch_before);
   void correct_last_snapshot();
   void publish();

@@ -13,12 +13,18 @@ namespace {
 /// The name of one of this server's own codes; empty for JSON-RPC's.
 std::string_view code_name(int code) {
   switch (code) {
+    case kNotTracking:
+      return "NOT_TRACKING";
     case kTooLarge:
       return "TOO_LARGE";
     case kBusy:
       return "BUSY";
+    case kNoSuchMap:
+      return "NO_SUCH_MAP";
     case kOutOfRange:
       return "OUT_OF_RANGE";
+    case kNotConfigured:
+      return "NOT_CONFIGURED";
     default:
       return "";
   }

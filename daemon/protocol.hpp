@@ -28,9 +28,12 @@ constexpr int kMethodNotFound = -32601;
 constexpr int kInvalidParams = -32602;
 constexpr int kInternalError = -32603;
 // This server's; `data.code` names them.
+constexpr int kNotTracking = -32001;
 constexpr int kTooLarge = -32002;
 constexpr int kBusy = -32003;
+constexpr int kNoSuchMap = -32005;
 constexpr int kOutOfRange = -32006;
+constexpr int kNotConfigured = -32007;
 
 /// An answer that is an error. Thrown by handlers, sent to the client.
 class RpcError : public std::runtime_error {

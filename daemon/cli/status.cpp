@@ -37,6 +37,15 @@ void print_stages(const Json& stages) {
   }
 }
 
+/// What runs now.
+void print_jobs(const Json& jobs) {
+  for (const Json& job : jobs) {
+    if (job["state"] != "running") continue;
+    fmt::print("job        {} {}, {:.0f} %\n", job["kind"].get<std::string>(), job["id"].dump(),
+               100.0 * job["progress"].get<double>());
+  }
+}
+
 void print(const Json& status) {
   const Json& counters = status["counters"];
   const Json& map = status["map"];
@@ -63,6 +72,7 @@ void print(const Json& status) {
   print_stages(status["stage_ms"]);
   const auto session = status["session_file"].get<std::string>();
   fmt::print("session    {}\n", session.empty() ? "not kept" : session);
+  print_jobs(status.value("jobs", Json::array()));
   fmt::print("daemon     glintd {}, up {:.0f} s, {} clients, {:.0f} MB\n",
              status["version"].get<std::string>(), status["uptime_s"].get<double>(),
              status["clients"].get<int>(), status["rss_mb"].get<double>());
