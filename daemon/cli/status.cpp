@@ -46,7 +46,7 @@ void print_jobs(const Json& jobs) {
   }
 }
 
-void print(const Json& status) {
+void print_status(const Json& status) {
   const Json& counters = status["counters"];
   const Json& map = status["map"];
   fmt::print("state      {}\n", status["state"].get<std::string>());
@@ -90,7 +90,7 @@ void add_status(CLI::App& app) {
       if (options->json) {
         std::cout << status.dump() << '\n';
       } else {
-        print(status);
+        print_status(status);
       }
     });
   });
