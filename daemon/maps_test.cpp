@@ -79,10 +79,10 @@ class MapsTest : public slam::test::InDirectory {
     }
     return nullptr;
   }
-  /// A job that runs until `stop` is set, or until it is given up.
-  std::uint64_t run_job_until(const std::atomic<bool>& stop) {
-    const auto begun = daemon_->runtime().start_job("walk", [&stop](RunningJob& job) {
-      while (!stop) {
+  /// A job that runs until stop_ is set, or until it is given up.
+  std::uint64_t run_job() {
+    const auto begun = daemon_->runtime().start_job("walk", [this](RunningJob& job) {
+      while (!stop_) {
         if (!job.progress(0.5)) return std::optional<Json>();
         std::this_thread::sleep_for(1ms);
       }
@@ -94,6 +94,7 @@ class MapsTest : public slam::test::InDirectory {
 
   Config config_;
   RuntimeOptions options_;
+  std::atomic<bool> stop_{false};  ///< For a job, which may outlive its test's function.
   std::optional<TestDaemon> daemon_;
   std::size_t fed_ = 0;
 };
@@ -234,8 +235,7 @@ TEST_F(MapsTest, AMapIsDeletedOnceAndThenThereIsNone) {
 
 TEST_F(MapsTest, WhileAJobRunsAnotherIsBusyAndQueriesAreAnswered) {
   map_scans(2);
-  std::atomic<bool> stop{false};
-  const auto id = run_job_until(stop);
+  const auto id = run_job();
   const Json error = refusal("save_map", {{"name", "office"}});
   EXPECT_EQ(error["data"]["code"], "BUSY");
   EXPECT_EQ(error["data"]["job"]["id"], id);
@@ -247,17 +247,16 @@ TEST_F(MapsTest, WhileAJobRunsAnotherIsBusyAndQueriesAreAnswered) {
   ASSERT_EQ(jobs.size(), 1U);
   EXPECT_EQ(jobs[0]["state"], "running");
   EXPECT_EQ(jobs[0]["progress"], 0.5);
-  stop = true;
+  stop_ = true;
   EXPECT_EQ(wait_for_end(static_cast<int>(id))["result"]["steps"], 7);
   EXPECT_EQ(save("office")["state"], "done");
 }
 
 TEST_F(MapsTest, ALongJobIsNoDeadThread) {
-  std::atomic<bool> stop{false};
-  run_job_until(stop);
+  run_job();
   std::this_thread::sleep_for(2200ms);
   EXPECT_TRUE(daemon_->runtime().alive(2'000'000'000));
-  stop = true;
+  stop_ = true;
 }
 
 TEST_F(MapsTest, AJobMayBeDoneByAnotherThread) {
@@ -296,8 +295,7 @@ TEST_F(MapsTest, APlaceThatCannotBeWrittenIsToldByTheJob) {
 }
 
 TEST_F(MapsTest, StoppingGivesUpTheJobThatRuns) {
-  std::atomic<bool> never{false};
-  run_job_until(never);
+  run_job();
   const std::shared_ptr<EventLog> events = options_.events;
   const auto start = std::chrono::steady_clock::now();
   daemon_.reset();

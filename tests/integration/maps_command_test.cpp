@@ -44,6 +44,7 @@ class MapsCommand : public slam::test::InDirectory {
     return run_glint(arguments);
   }
 
+  std::atomic<bool> stop_{false};  ///< For a job, which may outlive its test's function.
   std::optional<test::TestDaemon> daemon_;
 };
 
@@ -93,13 +94,12 @@ TEST_F(MapsCommand, ExitCodesTellBadNamesFailuresAndAnAbsentDaemonApart) {
   }
   EXPECT_EQ(run_glint({"maps", "--connect", "127.0.0.1:1"}).exit_code, 4);
 
-  std::atomic<bool> stop{false};
-  ASSERT_TRUE(daemon_->runtime().start_job("walk", [&](RunningJob&) {
-    while (!stop) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  ASSERT_TRUE(daemon_->runtime().start_job("walk", [this](RunningJob&) {
+    while (!stop_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     return std::optional<Json>(Json::object());
   }));
   const CommandResult busy = glint({"save", "office"});
-  stop = true;
+  stop_ = true;
   EXPECT_EQ(busy.exit_code, 1);
   EXPECT_THAT(busy.out, HasSubstr("(walk) is running"));
 }
