@@ -9,8 +9,10 @@
 #include <boost/asio/post.hpp>
 #include <random>
 
+#include "daemon/map_saving.hpp"
 #include "daemon/protocol_map.hpp"
 #include "daemon/sensor_link.hpp"
+#include "daemon/session_files.hpp"
 #include "daemon/version.hpp"
 
 namespace glint::daemon {
@@ -21,13 +23,52 @@ constexpr std::array kFeatures = {"get_pose",         "get_pose.at_ns", "get_pos
                                   "get_status",       "get_map",        "get_trajectory",
                                   "get_config",       "subscribe.pose", "subscribe.status",
                                   "subscribe.events", "unsubscribe",    "pause",
-                                  "resume",           "reset_odometry"};
+                                  "resume",           "reset_odometry", "save_map",
+                                  "list_maps",        "delete_map"};
 
 /// Tells one run of the daemon from the next.
 std::string random_instance() {
   std::random_device device;
   return fmt::format("{:08x}{:08x}", device(), device());
 }
+
+/// The reply's line. @throws RpcError.
+std::string checked_line(const Json& id, const Json& result) {
+  std::string line = result_line(id, result);
+  if (line.size() > kMaxLineBytes) {
+    throw RpcError(kTooLarge, "the answer is longer than the longest line; ask for less");
+  }
+  return line;
+}
+
+std::string map_name_param(const Json& params) {
+  const Json* name = find_param(params, "name");
+  if (name != nullptr && name->is_string() && SavedMaps::is_name(name->get<std::string>())) {
+    return name->get<std::string>();
+  }
+  throw RpcError(kInvalidParams, fmt::format("name must be {}", SavedMaps::kNameRule), "name");
+}
+
+/// All maps, one a step: a large one's pages may be slow to come.
+class MapList {
+ public:
+  explicit MapList(SavedMaps maps) : maps_(std::move(maps)) {}
+
+  std::optional<Json> step() {
+    if (!names_) names_ = maps_.names();
+    if (described_.size() == names_->size()) return Json{{"maps", std::move(described_)}};
+    const std::string& name = (*names_)[described_.size()];
+    Json map{{"name", name}};
+    map.update(describe_session(maps_.file_of(name)));
+    described_.push_back(std::move(map));
+    return std::nullopt;
+  }
+
+ private:
+  const SavedMaps maps_;
+  std::optional<std::vector<std::string>> names_;
+  Json described_ = Json::array();
+};
 
 }  // namespace
 
@@ -36,38 +77,75 @@ Api::Api(boost::asio::io_context& io, Runtime& runtime, const Config& config)
       runtime_(runtime),
       config_(config),
       instance_(random_instance()),
-      start_ns_(steady_now_ns()) {}
+      start_ns_(steady_now_ns()),
+      maps_(state_directory(config)) {}
 
 Api::Method Api::find_method(std::string_view name) {
   struct Entry {
     std::string_view name;
     Method method;
   };
-  static constexpr std::array<Entry, 7> kMethods = {
-      {{"get_pose", &Api::call_get_pose},
-       {"get_status", &Api::call_get_status},
-       {"get_trajectory", &Api::call_get_trajectory},
-       {"get_config", &Api::call_get_config},
-       {"pause", &Api::call_pause},
-       {"resume", &Api::call_resume},
-       {"reset_odometry", &Api::call_reset_odometry}}};
+  static constexpr std::array<Entry, 8> kMethods = {{{"get_pose", &Api::call_get_pose},
+                                                     {"get_status", &Api::call_get_status},
+                                                     {"get_trajectory", &Api::call_get_trajectory},
+                                                     {"get_config", &Api::call_get_config},
+                                                     {"pause", &Api::call_pause},
+                                                     {"resume", &Api::call_resume},
+                                                     {"reset_odometry", &Api::call_reset_odometry},
+                                                     {"save_map", &Api::call_save_map}}};
   const auto* found = std::ranges::find(kMethods, name, &Entry::name);
   return found == kMethods.end() ? nullptr : found->method;
 }
 
+Api::WorkerMethod Api::find_worker_method(std::string_view name) {
+  if (name == "get_map") return &Api::call_get_map;
+  if (name == "list_maps") return &Api::call_list_maps;
+  if (name == "delete_map") return &Api::call_delete_map;
+  return nullptr;
+}
+
 void Api::call(const Request& request, Reply reply) {
-  if (request.method == "get_map") return call_get_map(request, std::move(reply));
+  if (const WorkerMethod method = find_worker_method(request.method)) {
+    WorkerStep step = (this->*method)(request.params);
+    return run_on_worker(std::make_shared<WorkerCall>(
+        WorkerCall{request.id, head(), std::move(step), std::move(reply)}));
+  }
   const Method method = find_method(request.method);
   if (method == nullptr) {
     throw RpcError(kMethodNotFound, fmt::format("there is no method '{}'", request.method),
                    "method");
   }
-  const Json result = (this->*method)(request.params);
-  std::string line = result_line(request.id, result);
-  if (line.size() > kMaxLineBytes) {
-    throw RpcError(kTooLarge, "the answer is longer than the longest line; ask for less");
+  reply(checked_line(request.id, (this->*method)(request.params)));
+}
+
+void Api::run_on_worker(const std::shared_ptr<WorkerCall>& call) {
+  const bool submitted = runtime_.submit([this, call] {
+    auto line = take_step(*call);
+    boost::asio::post(io_, [this, call, line = std::move(line)]() mutable {
+      if (line) return call->reply(std::move(*line));
+      try {
+        run_on_worker(call);
+      } catch (const RpcError& error) {
+        call->reply(error_line(call->id, error));
+      }
+    });
+  });
+  if (!submitted) throw RpcError(kBusy, "too many queries are waiting; ask again");
+}
+
+// Nothing may leave it: who runs on the worker has nobody to tell but the client.
+std::optional<std::string> Api::take_step(const WorkerCall& call) {
+  try {
+    const auto fields = call.step();
+    if (!fields) return std::nullopt;
+    Json result = call.head;
+    result.update(*fields);
+    return checked_line(call.id, result);
+  } catch (const RpcError& error) {
+    return error_line(call.id, error);
+  } catch (const std::exception& error) {
+    return error_line(call.id, RpcError(kInternalError, error.what()));
   }
-  reply(std::move(line));
 }
 
 std::string Api::hello_line() const {
@@ -95,6 +173,7 @@ Json Api::status() const {
     service.sensor_problem = sensor_->problem();
   }
   service.clients = client_count_;
+  service.sessions_removed = sessions_removed_;
   return status_json(runtime_.status(), service, steady_now_ns());
 }
 
@@ -138,19 +217,66 @@ Json Api::post_command(Command command) {
   return out;
 }
 
-void Api::call_get_map(const Request& request, Reply reply) {
-  const MapQuery query = parse_map_query(request.params);
-  auto job = [this, query, id = request.id, head = head(), reply = std::move(reply)]() mutable {
-    Json result = std::move(head);
-    result.update(map_page(query, *runtime_.status().map->map));
-    std::string line = result_line(id, result);
-    boost::asio::post(io_, [reply = std::move(reply), line = std::move(line)]() mutable {
-      reply(std::move(line));
-    });
-  };
-  if (!runtime_.submit(std::move(job))) {
-    throw RpcError(kBusy, "too many map queries are waiting; ask again");
+Json Api::start_job(const std::string& kind, JobBody body) {
+  const auto begun = runtime_.start_job(kind, std::move(body));
+  if (!begun) {
+    const auto running = runtime_.jobs().running();
+    if (!running) throw RpcError(kBusy, "the daemon is stopping");
+    throw RpcError(kBusy,
+                   fmt::format("job {} ({}) is running; ask again when it has ended", running->id,
+                               running->kind),
+                   "", Json{{"job", job_json(*running)}});
   }
+  Json out = head();
+  out["accepted"] = true;
+  out["job"] = job_json(*begun);
+  return out;
+}
+
+void Api::expect_a_place_for_maps() const {
+  if (maps_.has_place()) return;
+  throw RpcError(kNotConfigured,
+                 "there is no place for maps: set state.directory and start the daemon anew",
+                 "state.directory");
+}
+
+Json Api::call_save_map(const Json& params) {
+  const auto map = runtime_.status().map;
+  MapSaving saving{map->session_file, map_name_param(params), maps_};
+  expect_a_place_for_maps();
+  if (map->map->keyframe_count == 0) {
+    throw RpcError(kNotTracking, "there is no keyframe yet, so there is no map to save");
+  }
+  if (map->session_file.empty()) {
+    throw RpcError(kNotTracking,
+                   "the sensor has not been found in the map yet, so there is nothing new to save");
+  }
+  return start_job("save_map", [this, saving = std::move(saving)](RunningJob& job) {
+    return save_map(saving, runtime_, job);
+  });
+}
+
+Api::WorkerStep Api::call_get_map(const Json& params) {
+  return [this, query = parse_map_query(params)]() -> std::optional<Json> {
+    return map_page(query, *runtime_.status().map->map);
+  };
+}
+
+Api::WorkerStep Api::call_list_maps(const Json&) {
+  expect_a_place_for_maps();
+  return [list = std::make_shared<MapList>(maps_)] { return list->step(); };
+}
+
+Api::WorkerStep Api::call_delete_map(const Json& params) {
+  const std::string name = map_name_param(params);
+  expect_a_place_for_maps();
+  return [maps = maps_, name]() -> std::optional<Json> {
+    if (!maps.remove(name)) {
+      throw RpcError(kNoSuchMap, fmt::format("there is no map '{}'; list_maps names all", name),
+                     "name");
+    }
+    return Json{{"deleted", name}};
+  };
 }
 
 }  // namespace glint::daemon

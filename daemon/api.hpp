@@ -4,20 +4,25 @@
 
 #include <boost/asio/io_context.hpp>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "daemon/config.hpp"
 #include "daemon/protocol.hpp"
 #include "daemon/protocol_pose.hpp"
 #include "daemon/protocol_status.hpp"
 #include "daemon/runtime.hpp"
+#include "daemon/saved_maps.hpp"
 
 namespace glint::daemon {
 
 class SensorLink;
 
 /// The methods that any client may call and that concern no one else: requests in, lines out.
-/// Lives on the main thread; map queries run on the worker and come back by the io_context.
+/// Lives on the main thread; what takes time, or looks at the disk, runs on the worker and comes
+/// back by the io_context; what takes long is a job of the runtime.
 class Api {
  public:
   /// Takes the line that answers a request. Called once, at once or later, on the main thread.
@@ -40,10 +45,24 @@ class Api {
   void set_sensor(const SensorLink& sensor) { sensor_ = &sensor; }
   /// Clients connected now, for status.
   void set_client_count(std::size_t count) { client_count_ = count; }
+  /// Old session files that were removed at start, for status.
+  void set_sessions_removed(std::size_t count) { sessions_removed_ = count; }
 
  private:
   using Method = Json (Api::*)(const Json& params);
   static Method find_method(std::string_view name);
+  /// A step of a method on the worker: the fields of the result, or null when it is to be called
+  /// again, after the queries of others. May throw RpcError.
+  using WorkerStep = std::function<std::optional<Json>()>;
+  using WorkerMethod = WorkerStep (Api::*)(const Json& params);
+  static WorkerMethod find_worker_method(std::string_view name);
+  /// A method on the worker, and who waits for it.
+  struct WorkerCall {
+    Json id;
+    Json head;
+    WorkerStep step;
+    Reply reply;
+  };
 
   Json call_get_pose(const Json& params);
   Json call_get_status(const Json& params);
@@ -52,8 +71,15 @@ class Api {
   Json call_pause(const Json& params);
   Json call_resume(const Json& params);
   Json call_reset_odometry(const Json& params);
-  void call_get_map(const Request& request, Reply reply);
+  Json call_save_map(const Json& params);
+  WorkerStep call_get_map(const Json& params);
+  WorkerStep call_list_maps(const Json& params);
+  WorkerStep call_delete_map(const Json& params);
   Json post_command(Command command);
+  Json start_job(const std::string& kind, JobBody body);
+  void run_on_worker(const std::shared_ptr<WorkerCall>& call);
+  static std::optional<std::string> take_step(const WorkerCall& call);
+  void expect_a_place_for_maps() const;
   [[nodiscard]] PoseContext context() const;
 
   boost::asio::io_context& io_;
@@ -62,7 +88,9 @@ class Api {
   const SensorLink* sensor_ = nullptr;  ///< Null: there is no session with the sensor.
   const std::string instance_;
   const std::int64_t start_ns_;
+  const SavedMaps maps_;
   std::size_t client_count_ = 0;
+  std::size_t sessions_removed_ = 0;
 };
 
 }  // namespace glint::daemon

@@ -51,9 +51,11 @@ void BackendThread::run() {
     look_at_sensor();
     if (result == PopResult::kItem) process(keyframe);
     keep_session();
+    crossings_.session_commit.serve([this] { return commit_session(); });
   }
   const slam::MapCorrection before = backend_->correction();
   backend_->finish();
+  crossings_.session_commit.close(commit_session());
   tell(before);
   correct_last_snapshot();
   heartbeat_.finish();
@@ -102,6 +104,13 @@ void BackendThread::keep_session() {
   const std::uint64_t failures = backend_->store_failures();
   backend_->keep_session();
   if (backend_->store_failures() != failures) publish();
+}
+
+// Whoever asked for it looks for the reason in what is published.
+bool BackendThread::commit_session() {
+  const bool done = backend_->commit_session();
+  if (!done) publish();
+  return done;
 }
 
 // Odometry has ended, and what it was told last it may not have seen.

@@ -33,6 +33,7 @@ class BackendThread {
   [[nodiscard]] std::unique_ptr<slam::Backend> make_backend() const;
   void begin_another_map();
   void tell(const slam::MapCorrection& before);
+  [[nodiscard]] bool commit_session();
   void correct_last_snapshot();
   void publish();
 

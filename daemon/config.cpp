@@ -238,6 +238,10 @@ constexpr std::array kKeys{
 
     ConfigKey{"state.directory", &at<&Config::state, &Config::State::directory>, 0, 0, "", "",
               "Where session files go. auto: systemd's StateDirectory, else none. Empty: none."},
+    ConfigKey{"state.max_sessions_mb", &at<&Config::state, &Config::State::max_sessions_mb>, 0, 1e9,
+              "MB", "",
+              "Room for session files: at start the oldest ones are removed until the others take "
+              "no more, never saved maps. 0: all are kept."},
     ConfigKey{"state.trajectory_poses", &at<&Config::state, &Config::State::trajectory_poses>, 1000,
               1e8, "poses", "",
               "Latest poses kept for get_trajectory and get_pose at_ns, some 150 bytes each."},

@@ -64,6 +64,7 @@ struct Config {
   };
   struct State {
     std::string directory = "auto";
+    int max_sessions_mb = 2000;
     int trajectory_poses = 200'000;
   };
   struct Map {

@@ -10,6 +10,7 @@
 
 #include "daemon/bounded_queue.hpp"
 #include "daemon/command_mailbox.hpp"
+#include "daemon/commit_request.hpp"
 #include "daemon/snapshot.hpp"
 #include "daemon/snapshot_slot.hpp"
 #include "driver/core/packet_source.hpp"
@@ -58,17 +59,21 @@ using Job = std::function<void()>;
 /// Everything that two threads of the runtime share.
 struct Crossings {
   explicit Crossings(std::size_t packet_capacity)
-      : packets(packet_capacity), keyframes(16), jobs(64) {}
+      : packets(packet_capacity), keyframes(16), jobs(64), long_jobs(2) {}
 
   void close() {
     packets.close();
     keyframes.close();
     jobs.close();
+    long_jobs.close();
+    session_commit.close(false);
   }
 
   BoundedQueue<ReceivedPacket> packets;    ///< receive -> odometry
   BoundedQueue<slam::Keyframe> keyframes;  ///< odometry -> backend
   BoundedQueue<Job> jobs;                  ///< main -> worker
+  BoundedQueue<Job> long_jobs;             ///< main -> jobs
+  CommitRequest session_commit;            ///< jobs -> backend
   CommandMailbox commands;                 ///< main, backend -> odometry
   SnapshotSlot<Snapshot> snapshot;         ///< odometry -> main
   SnapshotSlot<MapState> map;              ///< backend -> main, worker

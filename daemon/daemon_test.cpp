@@ -69,9 +69,14 @@ TEST(DaemonTest, HelloAnnouncesOnlyMethodsThatExist) {
   for (const Json& feature : client.hello()["features"]) {
     const auto name = feature.get<std::string>();
     const auto dot = name.find('.');
-    const Json params =
-        name.starts_with("subscribe.") ? Json{{"topics", {name.substr(dot + 1)}}} : Json::object();
-    EXPECT_NO_THROW(client.call(name.substr(0, dot), params)) << name;
+    const Json params = name.starts_with("subscribe.") ? Json{{"topics", {name.substr(dot + 1)}}}
+                                                       : Json{{"name", "office"}};
+    try {
+      client.call(name.substr(0, dot), params);
+    } catch (const ReplyError& error) {
+      EXPECT_TRUE(name.find("_map") != std::string::npos && name != "get_map") << name;
+      EXPECT_EQ(error.error()["data"]["code"], "NOT_CONFIGURED") << name;
+    }
   }
 }
 
@@ -215,6 +220,23 @@ TEST(DaemonTest, ALoopMovesTheMapFrameWithItsEpochAndLeavesTheOdometryFrame) {
   EXPECT_LT(largest_step_m, 0.15);
   EXPECT_EQ(reader.call("get_pose", {{"at", path[5]["t"]}})["p_m"], path[5]["p_m"]);
   EXPECT_EQ(path[kScans - 1]["p_m"], map["p_m"]);
+}
+
+TEST(DaemonTest, AQueryThatFailsOnTheWorkerIsAnErrorOfItsOwn) {
+  RuntimeOptions options;
+  options.loops = loop_at_second_keyframe;
+  TestDaemon daemon({}, options);
+  daemon.feed(room_packets(daemon.info(), 16));
+  ASSERT_TRUE(daemon.wait_for("get_status", [](const Json& s) { return s["map_epoch"] == 1; }));
+  Client client(daemon.address());
+  try {
+    client.call("get_map", {{"cursor", "1:0:0:0:0"}});
+    FAIL() << "a cursor from before a correction was taken";
+  } catch (const ReplyError& error) {
+    EXPECT_EQ(error.error()["data"]["code"], "OUT_OF_RANGE");
+  }
+  EXPECT_EQ(daemon.runtime().fault(), "");
+  EXPECT_FALSE(client.call("get_map")["tiles"].empty());
 }
 
 TEST(DaemonTest, PauseHoldsThePoseAndResumeGoesOn) {

@@ -22,6 +22,7 @@
 #include "daemon/test_room.hpp"
 #include "driver/test_udp.hpp"
 #include "pcap/capture_writer.hpp"
+#include "slam/store/session_reader.hpp"
 
 namespace glint::daemon {
 namespace {
@@ -189,6 +190,57 @@ TEST_F(GlintdTest, ServesACaptureToItsEndAndStopsCleanly) {
   const fs::path session = status["session_file"].get<std::string>();
   EXPECT_TRUE(fs::exists(session));
   EXPECT_FALSE(fs::exists(session.string() + "-wal"));
+}
+
+TEST_F(GlintdTest, OldSessionsMakeRoomAtStartAndSavedMapsStay) {
+  auto arguments = serve_capture(2);
+  arguments.insert(arguments.end(), {"--set", "state.max_sessions_mb=1"});
+  const fs::path state = directory_ / "state";
+  fs::create_directories(state / "maps");
+  const std::string content(700'000, 'x');
+  const auto now = fs::file_time_type::clock::now();
+  for (const int age_h : {3, 2, 1}) {
+    const fs::path file = state / ("session-2026010" + std::to_string(9 - age_h) + ".glint");
+    std::ofstream(file) << content;
+    fs::last_write_time(file, now - std::chrono::hours(age_h));
+    std::ofstream(state / "maps" / file.filename()) << content;
+  }
+  Process process(arguments, directory_);
+  const Json status = poll_status([](const Json& s) { return s["counters"]["poses"] == 2; });
+  ASSERT_FALSE(status.is_null()) << process.log();
+  EXPECT_EQ(status["counters"]["sessions_removed"], 2);
+  EXPECT_FALSE(fs::exists(state / "session-20260106.glint"));
+  EXPECT_FALSE(fs::exists(state / "session-20260107.glint"));
+  EXPECT_TRUE(fs::exists(state / "session-20260108.glint"));
+  EXPECT_TRUE(fs::exists(status["session_file"].get<std::string>()));
+  EXPECT_EQ(std::distance(fs::directory_iterator(state / "maps"), {}), 3);
+  EXPECT_THAT(process.log(), AllOf(HasSubstr("removed the old session session-20260106.glint"),
+                                   HasSubstr("removed the old session session-20260107.glint")));
+  process.signal(SIGTERM);
+  EXPECT_EQ(process.wait(), 0);
+}
+
+TEST_F(GlintdTest, StoppingWhileAMapIsSavedLeavesAWholeOneOrNone) {
+  Process process(serve_capture(4), directory_);
+  ASSERT_FALSE(poll_status([](const Json& s) {
+                 return s["map"]["keyframes"] > 0 && s["counters"]["poses"] == 4;
+               }).is_null())
+      << process.log();
+  {
+    Client client(socket());
+    EXPECT_EQ(client.call("save_map", {{"name", "office"}})["accepted"], true);
+  }
+  process.signal(SIGTERM);
+  EXPECT_EQ(process.wait(), 0);
+  const fs::path maps = directory_ / "state" / "maps";
+  for (const auto& entry : fs::directory_iterator(directory_ / "state")) {
+    EXPECT_NE(entry.path().extension(), ".part") << entry.path();
+  }
+  if (!fs::exists(maps / "office.glint")) {
+    EXPECT_TRUE(!fs::exists(maps) || fs::is_empty(maps));
+  } else {
+    EXPECT_GT(slam::SessionReader(maps / "office.glint").keyframe_count(), 0U);
+  }
 }
 
 TEST_F(GlintdTest, TwoSensorsOnOnePortReachTheirOwnDaemonsOnly) {

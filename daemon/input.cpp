@@ -11,7 +11,7 @@
 
 #include "daemon/parallel_for.hpp"
 #include "daemon/replay_pacer.hpp"
-#include "daemon/server.hpp"
+#include "daemon/session_files.hpp"
 #include "driver/udp_source.hpp"
 #include "pcap/pcap_source.hpp"
 #include "pcap/recording/recording_files.hpp"
@@ -204,7 +204,7 @@ Input open_input(const InputOptions& options, const Config& config) {
 }
 
 fs::path new_session_file(const Config& config) {
-  const fs::path directory = resolve_auto(config.state.directory, "STATE_DIRECTORY", "");
+  const fs::path directory = state_directory(config);
   if (directory.empty()) return {};
   std::error_code error;
   fs::create_directories(directory, error);
@@ -216,9 +216,11 @@ fs::path new_session_file(const Config& config) {
                     directory.string(), error.message()));
   }
   const std::string stem =
-      fmt::format("session-{:%Y%m%dT%H%M%SZ}", fmt::gmtime(std::time(nullptr)));
-  fs::path file = directory / (stem + ".glint");
-  for (int i = 2; fs::exists(file); ++i) file = directory / fmt::format("{}-{}.glint", stem, i);
+      fmt::format("{}{:%Y%m%dT%H%M%SZ}", kSessionPrefix, fmt::gmtime(std::time(nullptr)));
+  fs::path file = directory / fmt::format("{}{}", stem, kSessionSuffix);
+  for (int i = 2; fs::exists(file); ++i) {
+    file = directory / fmt::format("{}-{}{}", stem, i, kSessionSuffix);
+  }
   return file;
 }
 

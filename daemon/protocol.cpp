@@ -19,8 +19,12 @@ std::string_view code_name(int code) {
       return "TOO_LARGE";
     case kBusy:
       return "BUSY";
+    case kNoSuchMap:
+      return "NO_SUCH_MAP";
     case kOutOfRange:
       return "OUT_OF_RANGE";
+    case kNotConfigured:
+      return "NOT_CONFIGURED";
     default:
       return "";
   }

@@ -31,7 +31,9 @@ constexpr int kInternalError = -32603;
 constexpr int kNotTracking = -32001;
 constexpr int kTooLarge = -32002;
 constexpr int kBusy = -32003;
+constexpr int kNoSuchMap = -32005;
 constexpr int kOutOfRange = -32006;
+constexpr int kNotConfigured = -32007;
 
 /// An answer that is an error. Thrown by handlers, sent to the client.
 class RpcError : public std::runtime_error {

@@ -94,6 +94,12 @@ Json queue_json(const QueueStatus& queue) {
   return Json{{"size", queue.size}, {"capacity", queue.capacity}, {"dropped", queue.dropped}};
 }
 
+Json jobs_json(const std::vector<JobReport>& jobs) {
+  Json out = Json::array();
+  for (const JobReport& job : jobs) out.push_back(job_json(job));
+  return out;
+}
+
 Json odometry_json(const slam::OdometryEstimate& estimate) {
   return Json{{"frame_id", estimate.frame_id},         {"segment", estimate.segment},
               {"completeness", estimate.completeness}, {"keypoints", estimate.keypoints},
@@ -203,8 +209,10 @@ Json status_json(const RuntimeStatus& runtime, const ServiceStatus& service, std
                     {"points_refused", map.points_refused},
                     {"keyframes", map.keyframe_count}};
   out["counters"] = counters_json(runtime);
+  out["counters"]["sessions_removed"] = service.sessions_removed;
   out["stage_ms"] = stages_json(runtime);
   out["load"] = load_json(*runtime.snapshot);
+  out["jobs"] = jobs_json(runtime.jobs);
   out["queues"] =
       Json{{"packets", queue_json(runtime.packets)}, {"keyframes", queue_json(runtime.keyframes)}};
   out["source"] = service.source_name;

@@ -20,6 +20,7 @@ constexpr int kReplayScans = 4;
 constexpr std::size_t kUnknownSensorPackets = 2560;
 constexpr double kUsualScanRateHz = 10.0;
 constexpr std::chrono::milliseconds kWorkerWait{500};
+constexpr const char* kStoreWithoutError = "the back end has ended";
 
 std::size_t packet_capacity(const std::optional<SensorInfo>& info, bool lossless) {
   if (!info) return kUnknownSensorPackets;
@@ -33,6 +34,18 @@ QueueStatus queue_status(const BoundedQueue<T>& queue) {
   return {queue.size(), queue.capacity(), queue.dropped()};
 }
 
+void run_job(RunningJob& job, const JobBody& body) {
+  try {
+    if (auto result = body(job)) {
+      job.done(std::move(*result));
+    } else {
+      job.cancel();
+    }
+  } catch (const std::exception& error) {
+    job.fail(error.what());
+  }
+}
+
 }  // namespace
 
 Runtime::Runtime(const std::optional<SensorInfo>& info, const Config& config,
@@ -40,6 +53,7 @@ Runtime::Runtime(const std::optional<SensorInfo>& info, const Config& config,
     : config_(config),
       options_(std::move(options)),
       source_(std::move(source)),
+      jobs_(*options_.events),
       crossings_(packet_capacity(info, options_.lossless)),
       backend_(config_, options_.session, options_.loops, crossings_, backend_heartbeat_,
                *options_.events) {
@@ -56,13 +70,16 @@ void Runtime::start(ScanListener on_scan) {
                                        *options_.events, std::move(on_scan));
   spawn("odometry", [this] { odometry_->run(); });
   spawn("backend", [this] { backend_.run(); });
-  spawn("worker", [this] { work(); });
+  spawn("worker", [this] { work(crossings_.jobs, &worker_heartbeat_); });
+  spawn("jobs", [this] { work(crossings_.long_jobs, nullptr); });
   spawn("receive", [this] { receive_->run(); });
 }
 
 void Runtime::stop() {
+  jobs_.close();
   source_->stop();
   crossings_.jobs.close();
+  crossings_.long_jobs.close();
   // Each stage closes the queue to the next one when it has finished.
   for (std::thread& thread : threads_) thread.join();
   threads_.clear();
@@ -85,16 +102,36 @@ void Runtime::spawn(const char* name, std::function<void()> body) {
   });
 }
 
-void Runtime::work() {
+void Runtime::work(BoundedQueue<Job>& queue, Heartbeat* heartbeat) {
   using PopResult = BoundedQueue<Job>::PopResult;
   Job job;
   PopResult result = PopResult::kTimeout;
   while (result != PopResult::kClosed) {
-    worker_heartbeat_.beat();
-    result = crossings_.jobs.pop(job, kWorkerWait);
+    if (heartbeat != nullptr) heartbeat->beat();
+    result = queue.pop(job, kWorkerWait);
     if (result == PopResult::kItem) std::exchange(job, nullptr)();
   }
-  worker_heartbeat_.finish();
+  if (heartbeat != nullptr) heartbeat->finish();
+}
+
+std::optional<JobReport> Runtime::start_job(const std::string& kind, JobBody body) {
+  const std::shared_ptr<RunningJob> job = jobs_.begin(kind);
+  if (!job) return std::nullopt;
+  JobReport begun = job->report();
+  Job work = [job, body = std::move(body)] { run_job(*job, body); };
+  // Only a runtime that stops has no room for it: the board has one job at a time.
+  if (!crossings_.long_jobs.try_push(work)) return std::nullopt;
+  return begun;
+}
+
+bool Runtime::commit_session(RunningJob& job) {
+  const auto outcome = crossings_.session_commit.wait([&] { return job.progress(0.0); });
+  if (outcome == CommitRequest::Outcome::kFailed) {
+    const std::string& why = crossings_.map.load()->store_error;
+    throw InputError(fmt::format("the session cannot be brought onto the disk: {}",
+                                 why.empty() ? kStoreWithoutError : why));
+  }
+  return outcome == CommitRequest::Outcome::kDone;
 }
 
 void Runtime::use_sensor(const SensorInfo& info, bool this_start) {
@@ -134,6 +171,7 @@ RuntimeStatus Runtime::status() const {
   status.foreign = crossings_.source.foreign.load();
   status.packets = queue_status(crossings_.packets);
   status.keyframes = queue_status(crossings_.keyframes);
+  status.jobs = jobs_.latest();
   return status;
 }
 

@@ -15,6 +15,7 @@
 #include "daemon/config.hpp"
 #include "daemon/crossings.hpp"
 #include "daemon/event_log.hpp"
+#include "daemon/job_board.hpp"
 #include "daemon/odometry_thread.hpp"
 #include "daemon/receive_thread.hpp"
 #include "daemon/session_plan.hpp"
@@ -48,6 +49,10 @@ struct LastPacket {
   std::uint32_t init_id = 0;    ///< 0: its format has none, or it was not looked at yet.
 };
 
+/// Long work that reports how it fares, see RunningJob. Its result; null when it was given up, an
+/// exception when it failed.
+using JobBody = std::function<std::optional<Json>(RunningJob& job)>;
+
 /// Everything there is to tell at one moment. Value type.
 struct RuntimeStatus {
   std::shared_ptr<const Snapshot> snapshot;  ///< Never null.
@@ -61,11 +66,13 @@ struct RuntimeStatus {
   std::uint64_t foreign = 0;  ///< Datagrams of other senders.
   QueueStatus packets;
   QueueStatus keyframes;
+  std::vector<JobReport> jobs;  ///< The latest ones, the last begun first.
 };
 
-/// The pipeline's threads (receive, odometry, backend, worker): the only place where threads start
-/// and stop. The caller's thread is the fifth, `main`. Public members are thread-safe after
-/// start().
+/// The pipeline's threads (receive, odometry, backend, worker, jobs): the only place where threads
+/// start and stop. The caller's thread is the sixth, `main`. That of jobs is not watched: it may
+/// wait for a disk as long as that takes, and to start the daemon anew would make it no faster.
+/// Public members are thread-safe after start().
 class Runtime {
  public:
   /// Without `info` packets are dropped until use_sensor(). @throws InputError when the session
@@ -96,6 +103,14 @@ class Runtime {
   void post(Command command) { crossings_.commands.post(std::move(command)); }
   /// Runs a job on the worker thread. False when too many are waiting. From one thread only.
   [[nodiscard]] bool submit(Job job) { return crossings_.jobs.try_push(job); }
+  /// Runs long work on the jobs thread; how it begins. Null while another job runs. From one thread
+  /// only.
+  [[nodiscard]] std::optional<JobReport> start_job(const std::string& kind, JobBody body);
+  /// For jobs that other threads do, and for what is told of all of them.
+  [[nodiscard]] JobBoard& jobs() { return jobs_; }
+  /// Brings the session onto the disk as it is now; for the jobs thread, `job` may be given up
+  /// meanwhile. False when it was. @throws InputError when the session cannot be written.
+  [[nodiscard]] bool commit_session(RunningJob& job);
 
   /// Every thread has given a sign of life within `limit_ns`, or has ended as it should.
   [[nodiscard]] bool alive(std::int64_t limit_ns) const;
@@ -116,12 +131,14 @@ class Runtime {
 
  private:
   void spawn(const char* name, std::function<void()> body);
-  void work();
+  /// What others give a thread to do, until the queue is closed. `heartbeat`: null for none.
+  static void work(BoundedQueue<Job>& queue, Heartbeat* heartbeat);
 
   const Config config_;
   const RuntimeOptions options_;
   const std::unique_ptr<PacketSource> source_;
 
+  JobBoard jobs_;  ///< Before all that can hold one of its jobs.
   Crossings crossings_;
   Heartbeat receive_heartbeat_;
   Heartbeat odometry_heartbeat_;

@@ -9,6 +9,7 @@
 #include <csignal>
 
 #include "daemon/protocol_status.hpp"
+#include "daemon/session_files.hpp"
 #include "daemon/steady_clock.hpp"
 #include "daemon/systemd_notify.hpp"
 #include "slam/loops/loops_by_appearance.hpp"
@@ -19,6 +20,7 @@ namespace {
 constexpr std::int64_t kSupervisionNs = kNsPerSecond;
 /// No thread works on one thing for so long.
 constexpr std::int64_t kThreadLimitNs = 10 * kNsPerSecond;
+constexpr std::uint64_t kMegabyte = 1'000'000;
 
 /// Between two looks: often enough for the watchdog, and for the log.
 std::chrono::nanoseconds supervision_period() {
@@ -53,7 +55,23 @@ Service::Service(boost::asio::io_context& io, const Config& config, Input input,
   api_.set_sensor(*sensor_);
 }
 
+// After the session of now was opened, which may be one that goes on.
+void Service::make_room_for_sessions() {
+  const std::filesystem::path& current = runtime_.options().session.file;
+  if (current.empty() || config_.state.max_sessions_mb == 0) return;
+  const auto most_bytes = static_cast<std::uint64_t>(config_.state.max_sessions_mb) * kMegabyte;
+  const auto removed = remove_old_sessions(current.parent_path(), most_bytes, current);
+  for (const RemovedSession& session : removed) {
+    const std::string name = session.file.filename().string();
+    spdlog::info("removed the old session {}, {:.1f} MB: state.max_sessions_mb is {}", name,
+                 static_cast<double>(session.bytes) / kMegabyte, config_.state.max_sessions_mb);
+    runtime_.events().post({"session", 0, {{"removed", name}, {"bytes", session.bytes}}});
+  }
+  api_.set_sessions_removed(removed.size());
+}
+
 int Service::run() {
+  make_room_for_sessions();
   runtime_.start([this](const auto& snapshot) { server_.publish(snapshot); });
   server_.start();
   wait_for_signal();

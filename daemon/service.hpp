@@ -32,6 +32,7 @@ class Service {
   int run();
 
  private:
+  void make_room_for_sessions();
   void wait_for_signal();
   void reload();
   void supervise();

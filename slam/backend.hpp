@@ -63,6 +63,9 @@ class Backend {
   void finish();
   /// To be called often while no keyframe comes: what the session holds reaches the disk in time.
   void keep_session();
+  /// The session is on the disk when it returns. False when it could not be written; store_error()
+  /// says why.
+  [[nodiscard]] bool commit_session() { return !store_ || store_->commit(); }
   [[nodiscard]] const MapCorrection& correction() const { return correction_; }
   /// The map now; immutable, to be handed to clients.
   [[nodiscard]] std::shared_ptr<const MapSnapshot> snapshot() const { return snapshot_; }

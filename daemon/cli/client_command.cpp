@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "daemon/cli/command.hpp"
+#include "daemon/saved_maps.hpp"
 
 namespace glint::cli {
 
@@ -21,6 +22,12 @@ void with_client(const ClientOptions& options, const std::function<void(daemon::
   } catch (const daemon::ClientError& error) {
     throw ConnectionError(error.what());
   }
+}
+
+void expect_map_name(const std::string& name) {
+  if (daemon::SavedMaps::is_name(name)) return;
+  throw UsageError(
+      fmt::format("'{}' cannot be a map's name, which is {}", name, daemon::SavedMaps::kNameRule));
 }
 
 std::string vector_text(const daemon::Json& vector, int decimals) {

@@ -22,6 +22,9 @@ void add_client_options(CLI::App& command, ClientOptions& options);
 /// Connects and runs `body`. @throws ConnectionError when the daemon cannot be reached.
 void with_client(const ClientOptions& options, const std::function<void(daemon::Client&)>& body);
 
+/// @throws UsageError when the daemon would not take `name` as a map's name.
+void expect_map_name(const std::string& name);
+
 /// "[1.250, -0.031, 0.002]".
 std::string vector_text(const daemon::Json& vector, int decimals);
 

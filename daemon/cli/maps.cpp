@@ -1,104 +1,94 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright 2026 The Glint Authors
 //
-// glint maps: the sessions of a directory, a line each.
+// glint maps: the sessions of a directory, or the maps that the daemon saved, a line each.
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
-#include <vector>
 
+#include "daemon/cli/client_command.hpp"
 #include "daemon/cli/command.hpp"
-#include "driver/core/error.hpp"
-#include "slam/store/session_reader.hpp"
+#include "daemon/session_files.hpp"
+#include "driver/core/time.hpp"
 
 namespace glint::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using daemon::Json;
 
 struct MapsCommand {
   fs::path directory = ".";
-  bool json = false;
+  ClientOptions client;
 };
 
-std::vector<fs::path> sessions_in(const fs::path& directory) {
-  std::error_code error;
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(directory, error)) {
-    if (entry.path().extension() == ".glint") files.push_back(entry.path());
-  }
-  if (error) {
-    throw InputError(fmt::format("cannot list {}: {}; name a directory with sessions in it",
-                                 directory.string(), error.message()));
-  }
-  std::ranges::sort(files);
-  return files;
+void print_line(const std::string& what, const Json& session) {
+  const auto saved_s =
+      static_cast<std::time_t>(session["saved_ns"].get<std::int64_t>() / kNsPerSecond);
+  fmt::print("{}: {} keyframes in {} segments, {} loops, {:.0f} m in {:.0f} s, {:.1f} MB, {}\n",
+             what, session["keyframes"].get<std::size_t>(), session["segments"].get<std::size_t>(),
+             session["loops"].get<std::size_t>(), session["way_m"].get<double>(),
+             session["duration_s"].get<double>(), session["bytes"].get<double>() / 1e6,
+             fmt::format("{:%Y-%m-%d %H:%M:%S UTC}", fmt::gmtime(saved_s)));
 }
 
-// What is quick to find out: the file's pages are not all looked at.
-Json describe(const fs::path& file) {
-  Json out{{"file", file.string()}};
-  try {
-    const slam::SessionReader session(file, slam::SessionCheck::kVersion);
-    double duration_s = 0.0;
-    for (const slam::SessionSegment& segment : session.segments()) {
-      duration_s += static_cast<double>(segment.last_stamp - segment.first_stamp) * kSecondsPerNs;
+/// `key`: what each one is called by.
+void print_lines(const Json& all, const char* key) {
+  for (const Json& session : all) {
+    if (session.contains("error")) {
+      fmt::print("{}\n", session["error"].get<std::string>());
+    } else {
+      print_line(session[key].get<std::string>(), session);
     }
-    double way_m = 0.0;
-    const auto poses = session.poses();
-    for (std::size_t i = 1; i < poses.size(); ++i) {
-      if (poses[i].segment != poses[i - 1].segment) continue;
-      way_m +=
-          (poses[i].T_map_sensor.translation_m - poses[i - 1].T_map_sensor.translation_m).norm();
-    }
-    out["bytes"] = fs::file_size(file);
-    out["keyframes"] = poses.size();
-    out["segments"] = session.segments().size();
-    out["loops"] = session.loop_edges().size();
-    out["way_m"] = way_m;
-    out["duration_s"] = duration_s;
-  } catch (const InputError& error) {
-    out["error"] = error.what();
   }
-  return out;
 }
 
-void print_line(const Json& session) {
-  if (session.contains("error")) {
-    fmt::print("{}\n", session["error"].get<std::string>());
-    return;
-  }
-  fmt::print("{}: {} keyframes in {} segments, {} loops, {:.0f} m in {:.0f} s, {:.1f} MB\n",
-             session["file"].get<std::string>(), session["keyframes"].get<std::size_t>(),
-             session["segments"].get<std::size_t>(), session["loops"].get<std::size_t>(),
-             session["way_m"].get<double>(), session["duration_s"].get<double>(),
-             session["bytes"].get<double>() / 1e6);
-}
-
-void run(const MapsCommand& command) {
+void list_files(const MapsCommand& command) {
   Json all = Json::array();
-  for (const fs::path& file : sessions_in(command.directory)) all.push_back(describe(file));
-  if (command.json) {
+  for (const fs::path& file : daemon::session_files(command.directory)) {
+    Json session{{"file", file.string()}};
+    session.update(daemon::describe_session(file));
+    all.push_back(std::move(session));
+  }
+  if (command.client.json) {
     std::cout << all.dump() << '\n';
     return;
   }
   if (all.empty()) fmt::print("no sessions (*.glint) in {}\n", command.directory.string());
-  for (const Json& session : all) print_line(session);
+  print_lines(all, "file");
+}
+
+void list_maps(const MapsCommand& command) {
+  with_client(command.client, [&](daemon::Client& client) {
+    const Json reply = client.call("list_maps");
+    if (command.client.json) {
+      std::cout << reply.dump() << '\n';
+      return;
+    }
+    const Json& maps = reply.at("maps");
+    if (maps.empty()) fmt::print("no maps were saved; glint save NAME saves one\n");
+    print_lines(maps, "name");
+  });
 }
 
 }  // namespace
 
 void add_maps(CLI::App& app) {
   auto command = std::make_shared<MapsCommand>();
-  CLI::App* sub = app.add_subcommand("maps", "List the sessions of a directory");
-  sub->add_option("directory", command->directory, "Where to look (default: here)");
-  sub->add_flag("--json", command->json, "One JSON array");
-  sub->callback([command] { run(*command); });
+  CLI::App* sub =
+      app.add_subcommand("maps", "List the sessions of a directory, or the daemon's maps");
+  add_client_options(*sub, command->client);
+  CLI::Option* connect =
+      sub->get_option("--connect")
+          ->description("List the maps of the daemon at HOST:PORT, or the path of a Unix socket");
+  sub->get_option("--json")->description("Print JSON");
+  sub->add_option("directory", command->directory, "Where to look (default: here)")
+      ->excludes(connect);
+  sub->callback(
+      [command, connect] { connect->count() > 0 ? list_maps(*command) : list_files(*command); });
 }
 
 }  // namespace glint::cli

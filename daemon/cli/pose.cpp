@@ -21,7 +21,7 @@ struct PoseCommand {
   std::string child = "sensor";
 };
 
-void print(const Json& pose) {
+void print_pose(const Json& pose) {
   if (!pose.contains("p_m")) {
     fmt::print("state        {}\nno pose yet: no scan has arrived (glint status tells why)\n",
                pose["state"].get<std::string>());
@@ -47,7 +47,7 @@ void run(const PoseCommand& command) {
     if (command.client.json) {
       std::cout << pose.dump() << '\n';
     } else {
-      print(pose);
+      print_pose(pose);
     }
   });
 }

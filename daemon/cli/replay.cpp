@@ -68,11 +68,6 @@ double peak_rss_mb() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-bool has_pose(const slam::OdometryEstimate& estimate) {
-  return estimate.state == slam::TrackingState::kTracking ||
-         estimate.state == slam::TrackingState::kDegraded;
-}
-
 struct Totals {
   double duration_s = 0.0;
   double lost_s = 0.0;

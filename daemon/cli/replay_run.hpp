@@ -44,6 +44,12 @@ inline Pose map_pose(const ReplayResult& result, const slam::OdometryEstimate& e
                                     estimate.T_odom_sensor);
 }
 
+/// Whether the scan was placed, well or not so well.
+inline bool has_pose(const slam::OdometryEstimate& estimate) {
+  return estimate.state == slam::TrackingState::kTracking ||
+         estimate.state == slam::TrackingState::kDegraded;
+}
+
 struct ReplayOptions {
   slam::SlamConfig slam;
   slam::LoopSource loops;                                             ///< As Backend has it.

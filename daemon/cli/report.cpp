@@ -37,11 +37,6 @@ std::string figure(const std::string& body, const std::string& caption) {
                      html_escaped(caption));
 }
 
-bool has_pose(const slam::OdometryEstimate& estimate) {
-  return estimate.state == slam::TrackingState::kTracking ||
-         estimate.state == slam::TrackingState::kDegraded;
-}
-
 double seconds_from_start(const ReplayResult& result, const slam::OdometryEstimate& estimate) {
   return static_cast<double>(estimate.stamp - result.estimates.front().stamp) * kSecondsPerNs;
 }

@@ -37,7 +37,7 @@ struct SimulateOptions {
   int threads = 2;
 };
 
-void show_progress(int done, int all) {
+void show_scan(int done, int all) {
   std::cerr << fmt::format("\rscan {} of {}", done, all) << (done == all ? "\n" : "") << std::flush;
 }
 
@@ -50,7 +50,7 @@ void print_faults(const synth::FaultCounts& faults) {
 /// To the directory `out`.
 void write_capture(const SimulateOptions& options) {
   std::function<void(int, int)> progress;
-  if (isatty(STDERR_FILENO) != 0) progress = show_progress;
+  if (isatty(STDERR_FILENO) != 0) progress = show_scan;
   const synth::FaultCounts faults =
       synth::simulate(options.simulation, options.out, options.mtu, progress);
   std::cout << fmt::format("{}, {} s, seed {}: capture, metadata and ground truth in {}\n",

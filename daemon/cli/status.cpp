@@ -37,7 +37,16 @@ void print_stages(const Json& stages) {
   }
 }
 
-void print(const Json& status) {
+/// What runs now.
+void print_jobs(const Json& jobs) {
+  for (const Json& job : jobs) {
+    if (job["state"] != "running") continue;
+    fmt::print("job        {} {}, {:.0f} %\n", job["kind"].get<std::string>(), job["id"].dump(),
+               100.0 * job["progress"].get<double>());
+  }
+}
+
+void print_status(const Json& status) {
   const Json& counters = status["counters"];
   const Json& map = status["map"];
   fmt::print("state      {}\n", status["state"].get<std::string>());
@@ -63,6 +72,7 @@ void print(const Json& status) {
   print_stages(status["stage_ms"]);
   const auto session = status["session_file"].get<std::string>();
   fmt::print("session    {}\n", session.empty() ? "not kept" : session);
+  print_jobs(status.value("jobs", Json::array()));
   fmt::print("daemon     glintd {}, up {:.0f} s, {} clients, {:.0f} MB\n",
              status["version"].get<std::string>(), status["uptime_s"].get<double>(),
              status["clients"].get<int>(), status["rss_mb"].get<double>());
@@ -80,7 +90,7 @@ void add_status(CLI::App& app) {
       if (options->json) {
         std::cout << status.dump() << '\n';
       } else {
-        print(status);
+        print_status(status);
       }
     });
   });

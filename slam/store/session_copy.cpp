@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 
+#include <memory>
 #include <system_error>
 
 #include "driver/core/crc64.hpp"
@@ -12,6 +13,7 @@
 #include "driver/core/time.hpp"
 #include "slam/store/mapped_file.hpp"
 #include "slam/store/session_file.hpp"
+#include "slam/store/sync.hpp"
 #include "slam/store/temporary_file.hpp"
 
 namespace glint::slam {
@@ -21,6 +23,9 @@ namespace fs = std::filesystem;
 
 // Pages of 4 KiB between two calls of the progress: some milliseconds.
 constexpr int kPagesAStep = 1024;
+// 32 MiB. Left to the end, a slow disk would hold up the session's own writes for minutes, and who
+// wants to give the copy up.
+constexpr int kStepsASync = 8;
 
 InputError unwritable(const fs::path& target, const std::string& why) {
   return InputError(
@@ -29,18 +34,23 @@ InputError unwritable(const fs::path& target, const std::string& why) {
 }
 
 /// False when it was given up.
-bool copy_pages(const Database& source, const Database& target, const CopyProgress& progress) {
-  sqlite3_backup* backup = sqlite3_backup_init(target.handle(), "main", source.handle(), "main");
-  if (backup == nullptr) throw SqlError(target.handle());
+bool copy_pages(const Database& source, const Database& target, const fs::path& file,
+                const CopyProgress& progress) {
+  std::unique_ptr<sqlite3_backup, decltype(&sqlite3_backup_finish)> backup(
+      sqlite3_backup_init(target.handle(), "main", source.handle(), "main"),
+      &sqlite3_backup_finish);
+  if (!backup) throw SqlError(target.handle());
   bool wanted = true;
   int result = SQLITE_OK;
-  while (result == SQLITE_OK && wanted) {
-    result = sqlite3_backup_step(backup, kPagesAStep);
-    const double pages = sqlite3_backup_pagecount(backup);
-    const double left = sqlite3_backup_remaining(backup);
+  for (int step = 1; result == SQLITE_OK && wanted; ++step) {
+    result = sqlite3_backup_step(backup.get(), kPagesAStep);
+    // Its closing lets SQLite's lock on the file go, but nobody else knows the file.
+    if (step % kStepsASync == 0) sync_file(file);
+    const double pages = sqlite3_backup_pagecount(backup.get());
+    const double left = sqlite3_backup_remaining(backup.get());
     if (progress) wanted = progress(pages > 0.0 ? 1.0 - left / pages : 1.0);
   }
-  if (sqlite3_backup_finish(backup) != SQLITE_OK) throw SqlError(target.handle());
+  if (sqlite3_backup_finish(backup.release()) != SQLITE_OK) throw SqlError(target.handle());
   return wanted || result == SQLITE_DONE;
 }
 
@@ -51,7 +61,7 @@ bool write_copy(Database& source, const fs::path& file, const CopyProgress& prog
   // It has no name yet, so that nothing need be undone or made to last before it is whole.
   Database target(file.string(), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
   target.run("PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF;");
-  if (!copy_pages(source, target, progress)) return false;
+  if (!copy_pages(source, target, file, progress)) return false;
   // Other programs that read a database with a log leave files beside it.
   target.run("PRAGMA journal_mode = DELETE");
   return true;
