@@ -135,6 +135,18 @@ class GlintdTest : public testing::Test {
             "--set",    "state.directory=" + (directory_ / "state").string()};
   }
 
+  /// Arguments for a daemon that walks through a world, four times as fast as one would, and goes on
+  /// with the latest map.
+  [[nodiscard]] std::vector<std::string> walk(const std::string& world) const {
+    return {"--source", "synth:" + world + ",seconds=30,columns=512,beams=32",
+            "--rate",   "4",
+            "--set",    "server.listen=",
+            "--set",    "server.unix_socket=" + socket(),
+            "--set",    "state.directory=" + (directory_ / "state").string(),
+            "--set",    "map.on_start=continue",
+            "--set",    "map.search_s=6"};
+  }
+
   /// Arguments for a daemon that waits for a sensor where there is none.
   [[nodiscard]] std::vector<std::string> await_sensor(const std::string& port) const {
     return {"--config", "/dev/null",
@@ -241,6 +253,62 @@ TEST_F(GlintdTest, StoppingWhileAMapIsSavedLeavesAWholeOneOrNone) {
   } else {
     EXPECT_GT(slam::SessionReader(maps / "office.glint").keyframe_count(), 0U);
   }
+}
+
+TEST_F(GlintdTest, AfterAKillItFindsItselfInItsMapAndGoesOnInTheSameFrame) {
+  constexpr int kMapped = 12;
+  std::string session;
+  {
+    Process process(walk("room"), directory_);
+    const Json status = poll_status([](const Json& s) { return s["map"]["keyframes"] > kMapped; });
+    ASSERT_FALSE(status.is_null()) << process.log();
+    session = status["session_file"];
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    process.signal(SIGKILL);
+    process.wait();
+  }
+  Process process(walk("room"), directory_);
+  const Json waking = poll_status([](const Json& s) { return s["state"] == "LOCALIZING"; });
+  ASSERT_FALSE(waking.is_null()) << process.log();
+  EXPECT_EQ(waking["session_file"], "");
+  EXPECT_TRUE(waking.contains("localization"));
+  const int known = waking["map"]["keyframes"];
+  EXPECT_GE(known, kMapped);
+  const Json found = poll_status(
+      [&](const Json& s) { return s["state"] == "TRACKING" && s["map"]["keyframes"] > known; });
+  ASSERT_FALSE(found.is_null()) << process.log();
+  EXPECT_EQ(found["session_file"], session);
+  // The same walk: it began where the map's frame does.
+  Client client(socket());
+  const Json path = client.call("get_trajectory")["poses"];
+  ASSERT_FALSE(path.empty());
+  for (const Json& x_m : path[0]["p_m"]) EXPECT_LT(std::abs(x_m.get<double>()), 0.1);
+  process.signal(SIGTERM);
+  EXPECT_EQ(process.wait(), 0);
+  EXPECT_THAT(process.log(), HasSubstr("going on with the map of " + session));
+}
+
+TEST_F(GlintdTest, WhereItsMapIsNotItBeginsAnother) {
+  std::string session;
+  {
+    Process process(walk("room"), directory_);
+    const Json status = poll_status([](const Json& s) { return s["map"]["keyframes"] > 5; });
+    ASSERT_FALSE(status.is_null()) << process.log();
+    session = status["session_file"];
+    process.signal(SIGTERM);
+    process.wait();
+  }
+  const auto bytes = fs::file_size(session);
+  Process process(walk("corridor"), directory_);
+  ASSERT_FALSE(poll_status([](const Json& s) { return s["state"] == "LOCALIZING"; }).is_null());
+  const Json status = poll_status([](const Json& s) { return s["state"] == "TRACKING"; });
+  ASSERT_FALSE(status.is_null()) << process.log();
+  EXPECT_NE(status["session_file"], session);
+  EXPECT_TRUE(fs::exists(status["session_file"].get<std::string>()));
+  EXPECT_EQ(fs::file_size(session), bytes);
+  process.signal(SIGTERM);
+  EXPECT_EQ(process.wait(), 0);
+  EXPECT_THAT(process.log(), HasSubstr("a map of its own is begun"));
 }
 
 TEST_F(GlintdTest, TwoSensorsOnOnePortReachTheirOwnDaemonsOnly) {

@@ -28,7 +28,7 @@ void HealthLog::look(const RuntimeStatus& status, std::int64_t now_ns,
   }
   if (status.map->map->epoch != map_epoch_ && limiter_.allow("epoch", now_ns)) {
     map_epoch_ = status.map->map->epoch;
-    spdlog::info("the map was corrected: epoch {}, {} loops closed, {} candidates refused",
+    spdlog::info("the map has changed: epoch {}, {} loops closed, {} candidates refused",
                  map_epoch_, status.map->loops_accepted, status.map->loops_rejected);
   }
   const AssemblerCounters& packets = status.snapshot->packets;

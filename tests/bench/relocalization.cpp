@@ -93,7 +93,6 @@ void wake(synth::Simulator& simulator, int scans, const std::vector<Pose>& map, 
     const double start_ms = thread_cpu_ms();
     const auto relocation = relocalizer.locate(*keyframe);
     figures.cpu_ms.push_back(thread_cpu_ms() - start_ms);
-    if (getenv("VERBOSE"))
       for (const auto& c : relocalizer.candidates())
         fmt::print("  {} {} m {} in {} ov {:.2f} rms {:.3f} {}\n", i, c.from, c.matches, c.inliers,
                    c.overlap, c.rms_m, c.reason);
@@ -112,7 +111,6 @@ void wake(synth::Simulator& simulator, int scans, const std::vector<Pose>& map, 
   }
   ++(reachable ? figures.wakes : figures.elsewhere);
   if (reachable && found) ++figures.found;
-  if (getenv("VERBOSE")) fmt::print("{} {}\n", reachable, found);
 }
 
 double median(std::vector<double> values, double share = 0.5) {

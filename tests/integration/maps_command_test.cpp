@@ -30,7 +30,7 @@ class MapsCommand : public slam::test::InDirectory {
     Config config;
     config.state.directory = directory_.string();
     RuntimeOptions options;
-    options.session_file = directory_ / "session-now.glint";
+    options.session.file = directory_ / "session-now.glint";
     daemon_.emplace(config, options);
     daemon_->feed(test::room_packets(daemon_->info(), 3));
     EXPECT_TRUE(daemon_->wait_for("get_status", [](const Json& s) {
