@@ -125,6 +125,24 @@ TEST_F(PoseJsonTest, FramesCompose) {
   EXPECT_EQ(json["child"], "base");
 }
 
+TEST_F(PoseJsonTest, WhileItsPlaceIsLookedForNothingIsKnownInTheMap) {
+  snapshot_.correction.placed = false;
+  snapshot_.correction.confidence = 1.0 / 3.0;
+  const Json map = pose({{"frame", "map"}});
+  EXPECT_EQ(map["state"], "LOCALIZING");
+  EXPECT_EQ(map["confidence"], 1.0 / 3.0);
+  for (const char* unknown : {"p_m", "q_xyzw", "cov", "T_map_odom"}) {
+    EXPECT_FALSE(map.contains(unknown)) << unknown;
+  }
+  EXPECT_TRUE(map.contains("v_mps"));
+  EXPECT_FALSE(pose({{"frame", "map"}, {"predict_ms", 50}}).contains("p_m"));
+  const Json odom = pose({{"frame", "odom"}});
+  EXPECT_EQ(odom["state"], "LOCALIZING");
+  EXPECT_EQ(vector(odom["p_m"]), snapshot_.estimate->T_odom_sensor.translation_m);
+  snapshot_.estimate->state = slam::TrackingState::kLost;
+  EXPECT_EQ(pose({{"frame", "odom"}})["state"], "LOST") << "it goes before";
+}
+
 TEST_F(PoseJsonTest, OnlyAxesThatNothingHoldsAreDegenerate) {
   EXPECT_EQ(pose(Json::object())["degenerate_axes"], Json::array());
   slam::OdometryEstimate& estimate = *snapshot_.estimate;

@@ -147,6 +147,31 @@ TEST_F(FrontendTest, SurfacesAloneFollowARoom) {
   }
 }
 
+TEST_F(FrontendTest, WhileItsPlaceIsLookedForThereAreProbesBetweenKeyframes) {
+  frontend_.set_searching(true);
+  std::vector<Keyframe> probes;
+  std::uint64_t keyframes = 0;
+  const LidarScan& at_rest = scans_->front();
+  for (int i = 0; i < 12; ++i) {
+    LidarScan scan = at_rest;
+    for (SensorTime& time : scan.column_time) time = time + i * 100'000'000;
+    scan.end_time = scan.end_time + i * 100'000'000;
+    frontend_.process(scan);
+    auto keyframe = frontend_.take_keyframe();
+    if (!keyframe) continue;
+    if (keyframe->probe) {
+      EXPECT_EQ(keyframe->id, keyframes) << "the number of the one to come";
+      EXPECT_GT(keyframe->features.size(), 100U);
+      probes.push_back(std::move(*keyframe));
+    } else {
+      EXPECT_EQ(keyframe->id, keyframes++);
+    }
+  }
+  EXPECT_EQ(keyframes, 1U) << "at rest there is one keyframe";
+  ASSERT_EQ(probes.size(), 3U);
+  EXPECT_EQ(probes[1].estimate.stamp - probes[0].estimate.stamp, 300'000'000);
+}
+
 TEST_F(FrontendTest, TheSameScansGiveTheSameBits) {
   Frontend again(simulator_->info(), {});
   for (const LidarScan& scan : *scans_) {

@@ -131,6 +131,7 @@ nlohmann::ordered_json summary_of(const ReplayResult& result, const SensorInfo& 
       {"loops_accepted", result.loops_accepted},
       {"loops_rejected", result.loops_rejected},
       {"map_epoch", result.correction.epoch},
+      {"placed_in_map", result.correction.placed},
       {"degenerate_s", totals.degenerate_s},
       {"lost_s", totals.lost_s},
       {"interrupted", result.interrupted},
@@ -157,8 +158,9 @@ nlohmann::ordered_json summary_of(const ReplayResult& result, const SensorInfo& 
 }
 
 struct Trajectories {
-  std::vector<StampedPose> odometry;   // As told live.
-  std::vector<StampedPose> optimised;  // In the map frame, as the back end leaves it.
+  std::vector<StampedPose> odometry;  // As told live.
+  // In the map frame, as the back end leaves it; none where the sensor was not found in the map.
+  std::vector<StampedPose> optimised;
 };
 
 Trajectories trajectories_of(const ReplayResult& result) {
@@ -166,6 +168,7 @@ Trajectories trajectories_of(const ReplayResult& result) {
   for (const slam::OdometryEstimate& estimate : result.estimates) {
     if (!has_pose(estimate)) continue;
     trajectories.odometry.push_back({estimate.stamp, estimate.T_odom_sensor});
+    if (!result.correction.placed) continue;
     trajectories.optimised.push_back({estimate.stamp, map_pose(result, estimate)});
   }
   return trajectories;
@@ -258,6 +261,11 @@ void run(const ReplayCommand& command) {
   write_text_file(command.out / "summary.json", summary.dump(2) + "\n");
   write_report(command.out / "report.html",
                std::filesystem::path(command.input.capture).filename().string(), summary, result);
+  if (!result.correction.placed) {
+    std::cerr << "glint: the sensor was not found in the map of " << command.map.string()
+              << ": trajectory.tum is empty, odometry.tum is not; without --map a map of its own "
+                 "is made\n";
+  }
   std::cout << summary["frames"] << " scans, " << summary["frames_with_pose"] << " with a pose, "
             << summary["keyframes"] << " keyframes, " << summary["loops_accepted"]
             << " loops; results in " << command.out.string() << '\n'
