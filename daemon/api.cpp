@@ -24,7 +24,8 @@ constexpr std::array kFeatures = {"get_pose",         "get_pose.at_ns", "get_pos
                                   "get_config",       "subscribe.pose", "subscribe.status",
                                   "subscribe.events", "unsubscribe",    "pause",
                                   "resume",           "reset_odometry", "save_map",
-                                  "list_maps",        "delete_map"};
+                                  "list_maps",        "delete_map",     "load_map",
+                                  "clear_map"};
 
 /// Tells one run of the daemon from the next.
 std::string random_instance() {
@@ -85,14 +86,16 @@ Api::Method Api::find_method(std::string_view name) {
     std::string_view name;
     Method method;
   };
-  static constexpr std::array<Entry, 8> kMethods = {{{"get_pose", &Api::call_get_pose},
-                                                     {"get_status", &Api::call_get_status},
-                                                     {"get_trajectory", &Api::call_get_trajectory},
-                                                     {"get_config", &Api::call_get_config},
-                                                     {"pause", &Api::call_pause},
-                                                     {"resume", &Api::call_resume},
-                                                     {"reset_odometry", &Api::call_reset_odometry},
-                                                     {"save_map", &Api::call_save_map}}};
+  static constexpr std::array<Entry, 10> kMethods = {{{"get_pose", &Api::call_get_pose},
+                                                      {"get_status", &Api::call_get_status},
+                                                      {"get_trajectory", &Api::call_get_trajectory},
+                                                      {"get_config", &Api::call_get_config},
+                                                      {"pause", &Api::call_pause},
+                                                      {"resume", &Api::call_resume},
+                                                      {"reset_odometry", &Api::call_reset_odometry},
+                                                      {"save_map", &Api::call_save_map},
+                                                      {"load_map", &Api::call_load_map},
+                                                      {"clear_map", &Api::call_clear_map}}};
   const auto* found = std::ranges::find(kMethods, name, &Entry::name);
   return found == kMethods.end() ? nullptr : found->method;
 }
@@ -217,20 +220,47 @@ Json Api::post_command(Command command) {
   return out;
 }
 
+void Api::refuse_job() const {
+  const auto running = runtime_.jobs().running();
+  if (!running) throw RpcError(kBusy, "the daemon is stopping");
+  throw RpcError(kBusy,
+                 fmt::format("job {} ({}) is running; ask again when it has ended", running->id,
+                             running->kind),
+                 "", Json{{"job", job_json(*running)}});
+}
+
 Json Api::start_job(const std::string& kind, JobBody body) {
   const auto begun = runtime_.start_job(kind, std::move(body));
-  if (!begun) {
-    const auto running = runtime_.jobs().running();
-    if (!running) throw RpcError(kBusy, "the daemon is stopping");
-    throw RpcError(kBusy,
-                   fmt::format("job {} ({}) is running; ask again when it has ended", running->id,
-                               running->kind),
-                   "", Json{{"job", job_json(*running)}});
-  }
+  if (!begun) refuse_job();
   Json out = head();
   out["accepted"] = true;
   out["job"] = job_json(*begun);
   return out;
+}
+
+Json Api::change_map(const std::string& kind, SessionPlan plan) {
+  const std::shared_ptr<RunningJob> job = runtime_.jobs().begin(kind);
+  if (!job) refuse_job();
+  Json out = head();
+  out["accepted"] = true;
+  out["job"] = job_json(job->report());
+  runtime_.change_map({std::move(plan), job});
+  return out;
+}
+
+Json Api::call_load_map(const Json& params) {
+  const std::string name = map_name_param(params);
+  choice_param(params, "mode", "extend");
+  expect_a_place_for_maps();
+  if (!maps_.contains(name)) {
+    throw RpcError(kNoSuchMap, fmt::format("there is no map '{}'; list_maps names all", name),
+                   "name");
+  }
+  return change_map("load_map", plan_extension(config_, maps_.file_of(name)));
+}
+
+Json Api::call_clear_map(const Json&) {
+  return change_map("clear_map", plan_session_anew(config_));
 }
 
 void Api::expect_a_place_for_maps() const {

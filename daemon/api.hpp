@@ -72,6 +72,10 @@ class Api {
   Json call_resume(const Json& params);
   Json call_reset_odometry(const Json& params);
   Json call_save_map(const Json& params);
+  Json call_load_map(const Json& params);
+  Json call_clear_map(const Json& params);
+  Json change_map(const std::string& kind, SessionPlan plan);
+  [[noreturn]] void refuse_job() const;
   WorkerStep call_get_map(const Json& params);
   WorkerStep call_list_maps(const Json& params);
   WorkerStep call_delete_map(const Json& params);

@@ -15,8 +15,10 @@ namespace {
 constexpr std::chrono::milliseconds kWait{100};
 
 // What has happened to the map.
-const char* action_between(const slam::MapCorrection& before, const slam::MapCorrection& now) {
-  if (before.placed && !now.placed) return "loaded";
+const char* action_between(const slam::MapCorrection& before, const slam::MapCorrection& now,
+                           const slam::MapSnapshot& map) {
+  if (!now.placed) return "loaded";
+  if (map.keyframe_count == 0) return "cleared";
   return before.placed ? "corrected" : "located";
 }
 
@@ -52,10 +54,12 @@ void BackendThread::run() {
     if (result == PopResult::kItem) process(keyframe);
     keep_session();
     crossings_.session_commit.serve([this] { return commit_session(); });
+    if (const auto change = crossings_.map_change.take()) change_map(*change);
   }
   const slam::MapCorrection before = backend_->correction();
   backend_->finish();
   crossings_.session_commit.close(commit_session());
+  crossings_.map_change.close();
   tell(before);
   correct_last_snapshot();
   heartbeat_.finish();
@@ -78,6 +82,25 @@ void BackendThread::process(const slam::Keyframe& keyframe) {
   pgo_duration_.add(wall_ns(slam::Stage::kPgo));
   tell(before);
   if (backend_->searching_s() > plan_.search_s) begin_another_map();
+}
+
+// The map there is now stays until the other one is there.
+void BackendThread::change_map(const MapChange& change) {
+  const slam::MapCorrection before = backend_->correction();
+  const SessionPlan plan_before = std::exchange(plan_, change.plan);
+  try {
+    std::unique_ptr<slam::Backend> other = make_backend();
+    backend_->finish();
+    backend_ = std::move(other);
+  } catch (const std::exception& error) {
+    plan_ = plan_before;
+    return change.job->fail(error.what());
+  }
+  backend_->begin_at_epoch(before.epoch + 1);
+  if (sensor_) backend_->use_sensor(*sensor_);
+  tell(before);
+  change.job->done(Json{{"keyframes", backend_->snapshot()->keyframe_count},
+                        {"map_epoch", backend_->correction().epoch}});
 }
 
 // The sensor is nowhere in the map that it was to go on with.
@@ -141,7 +164,7 @@ void BackendThread::tell(const slam::MapCorrection& before) {
   const slam::MapSnapshot& map = *backend_->snapshot();
   events_.post({"map",
                 0,
-                {{"action", action_between(before, now)},
+                {{"action", action_between(before, now, map)},
                  {"map_epoch", map.epoch},
                  {"revision", map.revision},
                  {"points", map.point_count},

@@ -31,6 +31,7 @@ class BackendThread {
   void process(const slam::Keyframe& keyframe);
   void keep_session();
   [[nodiscard]] std::unique_ptr<slam::Backend> make_backend() const;
+  void change_map(const MapChange& change);
   void begin_another_map();
   void tell(const slam::MapCorrection& before);
   [[nodiscard]] bool commit_session();

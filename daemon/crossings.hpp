@@ -11,6 +11,7 @@
 #include "daemon/bounded_queue.hpp"
 #include "daemon/command_mailbox.hpp"
 #include "daemon/commit_request.hpp"
+#include "daemon/map_change.hpp"
 #include "daemon/snapshot.hpp"
 #include "daemon/snapshot_slot.hpp"
 #include "driver/core/packet_source.hpp"
@@ -67,6 +68,7 @@ struct Crossings {
     jobs.close();
     long_jobs.close();
     session_commit.close(false);
+    map_change.close();
   }
 
   BoundedQueue<ReceivedPacket> packets;    ///< receive -> odometry
@@ -74,6 +76,7 @@ struct Crossings {
   BoundedQueue<Job> jobs;                  ///< main -> worker
   BoundedQueue<Job> long_jobs;             ///< main -> jobs
   CommitRequest session_commit;            ///< jobs -> backend
+  MapChangeSlot map_change;                ///< main -> backend
   CommandMailbox commands;                 ///< main, backend -> odometry
   SnapshotSlot<Snapshot> snapshot;         ///< odometry -> main
   SnapshotSlot<MapState> map;              ///< backend -> main, worker

@@ -135,8 +135,8 @@ class GlintdTest : public testing::Test {
             "--set",    "state.directory=" + (directory_ / "state").string()};
   }
 
-  /// Arguments for a daemon that walks through a world, four times as fast as one would, and goes on
-  /// with the latest map.
+  /// Arguments for a daemon that walks through a world, four times as fast as one would, and goes
+  /// on with the latest map.
   [[nodiscard]] std::vector<std::string> walk(const std::string& world) const {
     return {"--source", "synth:" + world + ",seconds=30,columns=512,beams=32",
             "--rate",   "4",
@@ -286,6 +286,22 @@ TEST_F(GlintdTest, AfterAKillItFindsItselfInItsMapAndGoesOnInTheSameFrame) {
   process.signal(SIGTERM);
   EXPECT_EQ(process.wait(), 0);
   EXPECT_THAT(process.log(), HasSubstr("going on with the map of " + session));
+}
+
+TEST_F(GlintdTest, AMapThatWasSavedIsLoadedAndTheSensorFoundInIt) {
+  Process process(walk("room"), directory_);
+  ASSERT_FALSE(poll_status([](const Json& s) { return s["map"]["keyframes"] > 15; }).is_null());
+  Client client(socket());
+  const auto idle = [](const Json& s) { return s["jobs"][0]["state"] == "done"; };
+  client.call("save_map", {{"name", "room"}});
+  ASSERT_FALSE(poll_status(idle).is_null()) << process.log();
+  client.call("load_map", {{"name", "room"}});
+  const Json found = poll_status([&](const Json& s) {
+    return idle(s) && s["jobs"][0]["kind"] == "load_map" && s["state"] == "TRACKING" &&
+           s["session_file"] != "";
+  });
+  ASSERT_FALSE(found.is_null()) << process.log();
+  EXPECT_EQ(fs::path(found["session_file"].get<std::string>()).parent_path().filename(), "state");
 }
 
 TEST_F(GlintdTest, WhereItsMapIsNotItBeginsAnother) {

@@ -99,6 +99,59 @@ class MapsTest : public slam::test::InDirectory {
   std::size_t fed_ = 0;
 };
 
+TEST_F(MapsTest, ALoadedMapIsThereAndTheSensorLooksForItsPlaceInIt) {
+  map_scans(8);
+  ASSERT_EQ(save("office")["state"], "done");
+  const Json before = client().call("get_status");
+  const Json reply = client().call("load_map", {{"name", "office"}, {"mode", "extend"}});
+  EXPECT_EQ(reply["job"]["kind"], "load_map");
+  const Json job = wait_for_end(reply["job"]["id"].get<int>());
+  ASSERT_EQ(job["state"], "done") << job;
+  EXPECT_EQ(job["result"]["keyframes"], before["map"]["keyframes"]);
+  ASSERT_TRUE(
+      daemon_->wait_for("get_status", [](const Json& s) { return s["state"] == "LOCALIZING"; }));
+  const Json after = client().call("get_status");
+  EXPECT_GT(after["map_epoch"], before["map_epoch"]);
+  EXPECT_EQ(after["session_file"], "") << "nothing is written before it is found";
+  EXPECT_EQ(refusal("save_map", {{"name", "other"}})["data"]["code"], "NOT_TRACKING");
+  EXPECT_EQ(slam::SessionReader(map_file("office")).keyframe_count(),
+            before["map"]["keyframes"].get<std::size_t>());
+}
+
+TEST_F(MapsTest, AMapThatIsNotThereOrDamagedChangesNothing) {
+  map_scans(4);
+  EXPECT_EQ(refusal("load_map", {{"name", "office"}})["data"]["code"], "NO_SUCH_MAP");
+  EXPECT_EQ(refusal("load_map", {{"name", "../x"}})["data"]["field"], "name");
+  EXPECT_EQ(refusal("load_map", {{"name", "x"}, {"mode", "fly"}})["data"]["field"], "mode");
+  fs::create_directories(map_file("office").parent_path());
+  std::ofstream(map_file("office")) << "no map";
+  const Json before = client().call("get_status");
+  const Json reply = client().call("load_map", {{"name", "office"}});
+  const Json job = wait_for_end(reply["job"]["id"].get<int>());
+  EXPECT_EQ(job["state"], "failed");
+  EXPECT_THAT(job["error"].get<std::string>(), HasSubstr("office.glint"));
+  const Json after = client().call("get_status");
+  EXPECT_EQ(after["map_epoch"], before["map_epoch"]);
+  EXPECT_EQ(after["map"], before["map"]);
+  EXPECT_EQ(after["session_file"], before["session_file"]);
+}
+
+TEST_F(MapsTest, AClearedMapIsEmptyAndItsSessionStays) {
+  map_scans(6);
+  const Json before = client().call("get_status");
+  const int kept = before["map"]["keyframes"];
+  const Json reply = client().call("clear_map");
+  ASSERT_EQ(wait_for_end(reply["job"]["id"].get<int>())["state"], "done");
+  ASSERT_TRUE(daemon_->wait_for(
+      "get_status", [&](const Json& s) { return s["map_epoch"] > before["map_epoch"]; }));
+  const Json after = client().call("get_status");
+  EXPECT_EQ(after["map"]["keyframes"], 0);
+  EXPECT_EQ(after["state"], before["state"]);
+  EXPECT_NE(after["session_file"], before["session_file"]);
+  EXPECT_EQ(slam::SessionReader(before["session_file"].get<std::string>()).keyframe_count(), kept);
+  EXPECT_EQ(client().call("get_map")["tiles"], Json::array());
+}
+
 TEST_F(MapsTest, SavingAnswersAtOnceAndGivesAFileWithEveryKeyframe) {
   map_scans(4);
   Client asking(daemon_->address());

@@ -107,6 +107,9 @@ class Runtime {
   /// only.
   [[nodiscard]] std::optional<JobReport> start_job(const std::string& kind, JobBody body);
   /// For jobs that other threads do, and for what is told of all of them.
+  /// The back end goes on with another map, or an empty one, as soon as it can; the job is told of
+  /// it.
+  void change_map(MapChange change) { crossings_.map_change.post(std::move(change)); }
   [[nodiscard]] JobBoard& jobs() { return jobs_; }
   /// Brings the session onto the disk as it is now; for the jobs thread, `job` may be given up
   /// meanwhile. False when it was. @throws InputError when the session cannot be written.

@@ -28,10 +28,22 @@ bool has_keyframes(const fs::path& file) {
 
 }  // namespace
 
-SessionPlan plan_session(const Config& config) {
+SessionPlan plan_session_anew(const Config& config) {
   SessionPlan plan;
   plan.file = new_session_file(config);
   plan.search_s = config.map.search_s;
+  return plan;
+}
+
+SessionPlan plan_extension(const Config& config, const fs::path& earlier) {
+  SessionPlan plan = plan_session_anew(config);
+  plan.otherwise = plan.file;  // It is not written to before the sensor is found.
+  plan.earlier = earlier;
+  return plan;
+}
+
+SessionPlan plan_session(const Config& config) {
+  SessionPlan plan = plan_session_anew(config);
   if (config.map.on_start != "continue" || plan.file.empty()) return plan;
   const std::vector<fs::path> sessions = own_sessions(plan.file.parent_path());
   const auto latest = std::find_if(sessions.rbegin(), sessions.rend(), has_keyframes);

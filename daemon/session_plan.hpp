@@ -22,4 +22,10 @@ struct SessionPlan {
 /// new_session_file().
 SessionPlan plan_session(const Config& config);
 
+/// A session of its own, with an empty map.
+SessionPlan plan_session_anew(const Config& config);
+
+/// A session that goes on with the map of `earlier`, which is left as it is.
+SessionPlan plan_extension(const Config& config, const std::filesystem::path& earlier);
+
 }  // namespace glint::daemon

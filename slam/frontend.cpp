@@ -103,7 +103,11 @@ void Frontend::add_imu(const ImuSample& sample) {
   if (impl_->config.gyro) impl_->measurements.push_back(sample);
 }
 
-void Frontend::set_searching(bool searching) { impl_->searching = searching; }
+void Frontend::set_searching(bool searching) {
+  // The next scan is a keyframe: one that can be tied to the map, should the sensor be at rest.
+  if (searching && !impl_->searching) impl_->selector.reset();
+  impl_->searching = searching;
+}
 
 void Frontend::set_load_level(LoadLevel level) { impl_->set_load_level(level); }
 
