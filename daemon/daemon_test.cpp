@@ -158,13 +158,13 @@ TEST(DaemonTest, TheMapHasThePointsThatStatusSays) {
 /// One loop, at the second keyframe, which says that it is half a metre further and a little
 /// turned.
 slam::LoopSource loop_at_second_keyframe() {
-  return [](const slam::Keyframe& keyframe) {
+  return {[](const slam::Keyframe& keyframe) {
     slam::LoopSearch found;
     if (keyframe.id != 1) return found;
     const Pose seen{so3_exp({0.0, 0.0, 0.1}), {1.0, 0.0, 0.0}};
     found.edges = {{0, 1, seen, Eigen::Matrix<double, 6, 6>::Identity() * 1e-6}};
     return found;
-  };
+  }};
 }
 
 TEST(DaemonTest, ALoopMovesTheMapFrameWithItsEpochAndLeavesTheOdometryFrame) {

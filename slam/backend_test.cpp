@@ -47,7 +47,7 @@ LoopEdge true_loop(std::uint64_t from, std::uint64_t to) {
 
 /// Loops that a test knows of, by the keyframe that brings them.
 LoopSource known_loops(std::map<std::uint64_t, LoopEdge> edges) {
-  return [edges = std::move(edges)](const Keyframe& k) {
+  return {[edges = std::move(edges)](const Keyframe& k) {
     LoopSearch found;
     found.candidates.push_back({k.id > 5 ? k.id - 5 : 0, k.id, false, "too near", 0.4});
     if (const auto edge = edges.find(k.id); edge != edges.end()) {
@@ -55,7 +55,7 @@ LoopSource known_loops(std::map<std::uint64_t, LoopEdge> edges) {
       found.candidates.push_back({edge->second.from, k.id, true, "", 0.9, 80, 60, 0.7, 0.02});
     }
     return found;
-  };
+  }};
 }
 
 double error_m(const MapCorrection& correction, std::uint64_t k) {
@@ -164,7 +164,7 @@ TEST(Backend, LoopsThatComeTogetherAreOneCorrectionAndAWrongOneAmongThemGoes) {
                    true_loop(3, kRound + 3)};
     return found;
   };
-  Backend backend({}, {}, {}, all_at_once);
+  Backend backend({}, {}, {}, {all_at_once});
   for (std::uint64_t k = 0; k <= kRound + 4; ++k) backend.process(keyframe(k));
   EXPECT_EQ(backend.correction().epoch, 1U);
   EXPECT_EQ(backend.loops_accepted(), 3U);

@@ -3,8 +3,6 @@
 #pragma once
 
 #include <functional>
-#include <type_traits>
-#include <utility>
 #include <vector>
 
 #include "slam/keyframe.hpp"
@@ -21,18 +19,12 @@ struct LoopSearch {
 
 /// What knows the places of keyframes. Called by the back end only.
 struct LoopSource {
-  LoopSource() = default;
-  /// One that knows of no keyframes but those that it is asked about.
-  template <class Search>
-  requires std::is_invocable_r_v<LoopSearch, Search&, const Keyframe&> LoopSource(
-      Search search_loops)
-      : search(std::move(search_loops)) {}  // NOLINT(*-explicit-*)
-
   /// Takes each keyframe, in order, and tells which place seen before it shows. Empty: none is
   /// looked for.
-  std::function<LoopSearch(const Keyframe& keyframe)> search;
-  /// Takes the keyframes of a session that is gone on with, in order, before all others.
-  std::function<void(const Keyframe& keyframe)> remember;
+  std::function<LoopSearch(const Keyframe& keyframe)> search = {};
+  /// Takes the keyframes of a session that is gone on with, in order, before all others. May be
+  /// empty: then only those that were asked about are known.
+  std::function<void(const Keyframe& keyframe)> remember = {};
 
   explicit operator bool() const { return static_cast<bool>(search); }
 };

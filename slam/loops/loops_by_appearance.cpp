@@ -13,7 +13,8 @@ LoopSource loops_by_appearance(const SlamConfig& config) {
   // Shared, for a function must be copyable.
   const auto detector =
       std::make_shared<LoopDetector>(open_vocabulary(config.vocabulary), config.loop_density);
-  LoopSource source = [detector](const Keyframe& keyframe) {
+  LoopSource source;
+  source.search = [detector](const Keyframe& keyframe) {
     LoopSearch search;
     search.edges = detector->add(keyframe);
     search.candidates = detector->candidates();
