@@ -12,7 +12,7 @@
 namespace glint::daemon {
 namespace {
 
-constexpr std::chrono::milliseconds kWait{100};
+constexpr std::chrono::milliseconds kKeyframeWait{100};
 
 // What has happened to the map.
 const char* action_between(const slam::MapCorrection& before, const slam::MapCorrection& now,
@@ -49,7 +49,7 @@ void BackendThread::run() {
   PopResult result = PopResult::kTimeout;
   while (result != PopResult::kClosed) {
     heartbeat_.beat();
-    result = crossings_.keyframes.pop(keyframe, kWait);
+    result = crossings_.keyframes.pop(keyframe, kKeyframeWait);
     look_at_sensor();
     if (result == PopResult::kItem) process(keyframe);
     keep_session();

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kSigma_m = 0.1;
 // Of the motion, where chi^2 reaches 95 %.
-constexpr double kGate_m = 1.96 * kSigma_m;
+constexpr double kPatchGate_m = 1.96 * kSigma_m;
 
 WeakAxes weak_along(const Eigen::Vector3d& axis) {
   WeakAxes axes;
@@ -40,20 +40,20 @@ const PosePrior kMotion = motion(Eigen::Vector3d::Constant(kSigma_m));
 
 TEST(PatchGate, WhatIsWithinTheMotionsGateAgrees) {
   const WeakAxes along_x = weak_along(Eigen::Vector3d::UnitX());
-  for (const double way_m : {0.0, 0.95 * kGate_m, -0.95 * kGate_m}) {
+  for (const double way_m : {0.0, 0.95 * kPatchGate_m, -0.95 * kPatchGate_m}) {
     EXPECT_TRUE(agrees_with_motion(placed({way_m, 0.0, 0.0}), kMotion, along_x)) << way_m;
   }
 }
 
 TEST(PatchGate, WhatIsBeyondItContradicts) {
   const WeakAxes along_x = weak_along(Eigen::Vector3d::UnitX());
-  for (const double way_m : {1.05 * kGate_m, -1.05 * kGate_m, 3.0}) {
+  for (const double way_m : {1.05 * kPatchGate_m, -1.05 * kPatchGate_m, 3.0}) {
     EXPECT_FALSE(agrees_with_motion(placed({way_m, 0.0, 0.0}), kMotion, along_x)) << way_m;
   }
 }
 
 TEST(PatchGate, OnlyWeakAxesAreLookedAlong) {
-  const Pose off_along_y = placed({0.0, 2.0 * kGate_m, 0.0});
+  const Pose off_along_y = placed({0.0, 2.0 * kPatchGate_m, 0.0});
   EXPECT_TRUE(agrees_with_motion(off_along_y, kMotion, {}));
   WeakAxes axes = weak_along(Eigen::Vector3d::UnitX());
   EXPECT_TRUE(agrees_with_motion(off_along_y, kMotion, axes));
@@ -67,9 +67,9 @@ TEST(PatchGate, OnlyWeakAxesAreLookedAlong) {
 TEST(PatchGate, TheMotionsSurenessIsThatOfTheScansAxes) {
   // Turned by a quarter, the odometry's x is the scan's -y.
   const PosePrior vague_along_x = motion({kSigma_m, 10.0 * kSigma_m, kSigma_m});
-  EXPECT_TRUE(agrees_with_motion(placed({2.0 * kGate_m, 0.0, 0.0}), vague_along_x,
+  EXPECT_TRUE(agrees_with_motion(placed({2.0 * kPatchGate_m, 0.0, 0.0}), vague_along_x,
                                  weak_along(Eigen::Vector3d::UnitX())));
-  EXPECT_FALSE(agrees_with_motion(placed({0.0, 2.0 * kGate_m, 0.0}), vague_along_x,
+  EXPECT_FALSE(agrees_with_motion(placed({0.0, 2.0 * kPatchGate_m, 0.0}), vague_along_x,
                                   weak_along(Eigen::Vector3d::UnitY())));
 }
 

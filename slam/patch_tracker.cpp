@@ -16,14 +16,14 @@ constexpr std::size_t kMostPatches = 60;
 // With fewer, new ones are looked for in each scan: of those in motion a good third looks alike, a
 // dozen of which is needed. With 30 a drive in a tunnel with 16 beams ended DEGRADED.
 constexpr std::size_t kEnoughToSpare = 45;
-constexpr int kSectors = 8;
+constexpr int kPatchSectors = 8;
 constexpr int kMostInSector = 12;
 constexpr int kOldest_scans = 25;
 constexpr int kApart_px = 10;
 constexpr int kApartRows = 3;
 constexpr int kCandidateStep = 2;
 constexpr double kNearest_m = 0.7;
-constexpr double kFarthest_m = 30.0;
+constexpr double kFarthestPatch_m = 30.0;
 // Of a surface's range within a patch: how far its ends may lie off the middle, as a share of it.
 constexpr double kBend = 0.02;
 // Grey levels a pixel; what noise does not reach when three rows or columns are averaged.
@@ -50,7 +50,7 @@ bool translates(const WeakAxis& axis) { return !axis.rotation; }
 
 int sector_of(const Eigen::Vector3d& point_m) {
   const double turn = std::atan2(point_m.y(), point_m.x()) / (2.0 * std::numbers::pi);
-  return static_cast<int>((turn + 1.0) * kSectors) % kSectors;
+  return static_cast<int>((turn + 1.0) * kPatchSectors) % kPatchSectors;
 }
 
 // To zero mean and unit variance; gives the deviation.
@@ -241,7 +241,7 @@ void PatchTracker::find_candidates(const Pose& T_odom_scan, const WeakAxes& axes
   for (int row = kHalfHeight; row < range_mm.rows - kHalfHeight; ++row) {
     for (int u = kHalfWidth; u < range_mm.cols - kHalfWidth; u += kCandidateStep) {
       const double range_m = 0.001 * range_mm(row, u);
-      if (range_m < kNearest_m || range_m > kFarthest_m) continue;
+      if (range_m < kNearest_m || range_m > kFarthestPatch_m) continue;
       const float by = score(row, u, {directions.data(), count});
       if (by > 0.0F) candidates_.push_back({by, row, u});
     }
@@ -294,7 +294,7 @@ void PatchTracker::renew(const Pose& T_odom_scan, const WeakAxes& axes) {
     int u;
   };
   std::vector<Taken> taken;
-  std::array<int, kSectors> in_sector{};
+  std::array<int, kPatchSectors> in_sector{};
   const Pose T_scan_odom = T_odom_scan.inverse();
   Look seen;
   std::erase_if(patches_, [&](Patch& patch) {

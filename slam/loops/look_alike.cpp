@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "slam/loops/surface_map.hpp"
 #include "slam/loops/voxel_key.hpp"
 #include "slam/matching.hpp"
 
@@ -17,6 +18,9 @@ namespace {
 constexpr float kGate_m = 0.1F;
 constexpr float kGateShare = 0.01F;
 constexpr int kMostBits = 64;
+// Edge of the cubes that planes are looked for in, to that of those which hold one point of each
+// keyframe.
+constexpr float kKnownCubesPerVoxel = 2.0F;
 // Far ones are too coarse to be told apart. The gate there is within the cells searched.
 constexpr float kFarthestAlike_m = 20.0F;
 constexpr float kCell_m = 0.5F;
@@ -48,7 +52,8 @@ double chance_of(int count, int found, double share) {
 // The keypoints of a few places by where they are, and their surfaces.
 class Known {
  public:
-  Known(const Place& base, std::span<const Place> around) : voxel_m_(base.voxel_m) {
+  Known(const Place& base, std::span<const Place> around)
+      : surfaces_(kKnownCubesPerVoxel * base.voxel_m, 2000 * around.size()) {
     const Pose T_base_odom = base.T_odom_sensor.inverse();
     for (const Place& place : around) {
       const Pose T_base_place = T_base_odom * place.T_odom_sensor;
@@ -59,27 +64,18 @@ class Known {
       }
       for (const Eigen::Vector3f& point_m : place.points_m) {
         const Eigen::Vector3f at_m = (T_base_place * point_m.cast<double>()).cast<float>();
-        surface_.emplace(voxel_key(at_m, voxel_m_), at_m);
+        surfaces_.add(at_m);
       }
     }
   }
 
-  /// Whether there is a surface there; a car that has left had one that is gone.
-  [[nodiscard]] bool sees(const Eigen::Vector3f& at_m) const {
-    const Eigen::Vector3i home = voxel_of(at_m, voxel_m_);
-    Eigen::Vector3i offset;
-    for (offset.x() = -1; offset.x() <= 1; ++offset.x()) {
-      for (offset.y() = -1; offset.y() <= 1; ++offset.y()) {
-        for (offset.z() = -1; offset.z() <= 1; ++offset.z()) {
-          const auto found = surface_.find(voxel_key(home + offset));
-          if (found != surface_.end() &&
-              (found->second - at_m).squaredNorm() < voxel_m_ * voxel_m_) {
-            return true;
-          }
-        }
-      }
-    }
-    return false;
+  /// Whether there is a surface there; a car that has left had one that is gone, and one that has
+  /// come stands before what was seen.
+  [[nodiscard]] bool sees(const Eigen::Vector3f& at_m, float gate_m) {
+    const auto plane = surfaces_.plane_near(at_m.cast<double>());
+    if (!plane) return false;
+    return std::abs(plane->normal.dot(at_m.cast<double>() - plane->middle_m)) <
+           static_cast<double>(gate_m);
   }
 
   [[nodiscard]] bool has(const Eigen::Vector3f& at_m, float gate_m,
@@ -107,15 +103,14 @@ class Known {
  private:
   std::unordered_map<std::uint64_t, std::vector<std::pair<Eigen::Vector3f, const Descriptor*>>>
       cells_;
-  const float voxel_m_;
-  std::unordered_map<std::uint64_t, Eigen::Vector3f> surface_;  ///< A point in each voxel.
+  SurfaceMap surfaces_;
 };
 
 }  // namespace
 
 Comparison compare_places(const Place& known, std::span<const Place> around, const Place& seen,
                           const Pose& T_known_seen) {
-  const Known index(known, around);
+  Known index(known, around);
   std::unordered_map<std::uint64_t, Cube> cubes;
   Cube all;
   const auto strong =
@@ -123,8 +118,9 @@ Comparison compare_places(const Place& known, std::span<const Place> around, con
   for (std::size_t i = 0; i < strong; ++i) {
     const Eigen::Vector3f at_m = (T_known_seen * seen.keypoints_m[i].cast<double>()).cast<float>();
     const float range_m = std::max(at_m.norm(), seen.keypoints_m[i].norm());
-    if (range_m > kFarthestAlike_m || !index.sees(at_m)) continue;
-    const bool found = index.has(at_m, kGate_m + kGateShare * range_m, seen.descriptors[i]);
+    const float gate_m = kGate_m + kGateShare * range_m;
+    if (range_m > kFarthestAlike_m || !index.sees(at_m, gate_m)) continue;
+    const bool found = index.has(at_m, gate_m, seen.descriptors[i]);
     for (Cube* cube : {&all, &cubes[voxel_key(at_m, kCube_m)]}) {
       ++cube->keypoints;
       cube->found += found ? 1 : 0;

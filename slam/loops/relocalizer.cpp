@@ -13,28 +13,28 @@ namespace {
 
 // Similarity below which a place is not looked at: unlike that of two scans in a row it says little
 // by itself.
-constexpr double kLeastSimilarity = 0.01;
+constexpr double kLeastLikeness = 0.01;
 // Keyframes of the map this near to a likelier one (in number) show the same.
-constexpr std::size_t kRegionReach = 3;
-constexpr std::size_t kMostMatched = 10;
+constexpr std::size_t kSameSight = 3;
+constexpr std::size_t kMostAsked = 10;
 constexpr std::size_t kMostFits = 4;
 // Keyframes on either side whose points make the surfaces around a place, and whose keypoints
 // stand beside its own.
-constexpr std::size_t kAround = 5;
-constexpr std::size_t kBeside = 5;
+constexpr std::size_t kSurfacesAround = 5;
+constexpr std::size_t kStandIns = 5;
 // Scans that must agree; so many are remembered, over so much way.
-constexpr std::size_t kAgreeing = 3;
-constexpr std::size_t kMostScans = 16;
-constexpr double kMemory_m = 8.0;
+constexpr std::size_t kScansNeeded = 3;
+constexpr std::size_t kScansKept = 16;
+constexpr double kScanMemory_m = 8.0;
 // One keypoints' cube that shows something else is forgiven to so many scans.
 constexpr int kScansPerContradiction = 6;
 // Another place is out when it has less than this share of the keypoints found, or a cube against
 // it in each scan.
 constexpr double kRivalShare = 0.8;
 // By how much two scans' places may differ from what odometry says.
-constexpr double kApart_m = 0.3;
-constexpr double kApartShare = 0.03;
-constexpr double kApart_rad = 0.07;
+constexpr double kDisagree_m = 0.3;
+constexpr double kDisagreeShare = 0.03;
+constexpr double kDisagree_rad = 0.07;
 
 std::size_t numbers_apart(std::size_t a, std::size_t b) { return a > b ? a - b : b - a; }
 
@@ -66,8 +66,8 @@ std::optional<Relocation> Relocalizer::locate(const Keyframe& keyframe) {
     scan.path_m =
         last.path_m + (scan.T_odom_sensor.translation_m - last.T_odom_sensor.translation_m).norm();
   }
-  std::erase_if(scans_, [&](const Scan& s) { return scan.path_m - s.path_m > kMemory_m; });
-  if (scans_.size() == kMostScans) scans_.pop_front();
+  std::erase_if(scans_, [&](const Scan& s) { return scan.path_m - s.path_m > kScanMemory_m; });
+  if (scans_.size() == kScansKept) scans_.pop_front();
   for (const std::size_t entry : likeliest(vocabulary_->bag_of(current.descriptors))) {
     judge(entry, current, candidates_.emplace_back(), scan);
     if (scan.fits.size() == kMostFits) break;
@@ -78,16 +78,16 @@ std::optional<Relocation> Relocalizer::locate(const Keyframe& keyframe) {
 
 // The places most like it, none next to a likelier one.
 std::vector<std::size_t> Relocalizer::likeliest(const BagOfWords& bag) {
-  std::vector<ScoredPlace> found = index_.query(bag, places_.size(), kLeastSimilarity);
+  std::vector<ScoredPlace> found = index_.query(bag, places_.size(), kLeastLikeness);
   std::ranges::stable_sort(found, std::ranges::greater{}, &ScoredPlace::similarity);
   std::vector<std::size_t> entries;
   for (const ScoredPlace& place : found) {
     const auto same = [&](std::size_t better) {
-      return numbers_apart(better, place.entry) <= kRegionReach;
+      return numbers_apart(better, place.entry) <= kSameSight;
     };
     if (std::ranges::any_of(entries, same)) continue;
     entries.push_back(place.entry);
-    if (entries.size() == kMostMatched) break;
+    if (entries.size() == kMostAsked) break;
   }
   return entries;
 }
@@ -104,7 +104,7 @@ void Relocalizer::judge(std::size_t entry, const Place& current, LoopCandidate& 
     candidate.reason = "another keyframe of the same place is more alike";
     return;
   }
-  if (!verifier_.registered(older, places_around(places_, entry, kAround), current, start,
+  if (!verifier_.registered(older, places_around(places_, entry, kSurfacesAround), current, start,
                             candidate, fit.edge)) {
     return;
   }
@@ -125,10 +125,10 @@ std::vector<Place> Relocalizer::nearest(const Pose& T_map_sensor) const {
     order.emplace_back(
         (places_[i].T_odom_sensor.translation_m - T_map_sensor.translation_m).squaredNorm(), i);
   }
-  const auto end = order.begin() + static_cast<std::ptrdiff_t>(std::min(kBeside, order.size()));
+  const auto end = order.begin() + static_cast<std::ptrdiff_t>(std::min(kStandIns, order.size()));
   std::partial_sort(order.begin(), end, order.end());
   std::vector<Place> places;
-  places.reserve(kBeside);
+  places.reserve(kStandIns);
   for (auto at = order.begin(); at != end; ++at) places.push_back(places_[at->second]);
   return places;
 }
@@ -137,8 +137,8 @@ bool Relocalizer::agree(const Scan& a, const Fit& fit_a, const Scan& b, const Fi
   const Pose T_a_b = a.T_odom_sensor.inverse() * b.T_odom_sensor;
   const Pose apart = (fit_a.T_map_sensor * T_a_b).inverse() * fit_b.T_map_sensor;
   const double way_m = std::abs(a.path_m - b.path_m);
-  return apart.translation_m.norm() < kApart_m + kApartShare * way_m &&
-         so3_log(apart.rotation).norm() < kApart_rad;
+  return apart.translation_m.norm() < kDisagree_m + kDisagreeShare * way_m &&
+         so3_log(apart.rotation).norm() < kDisagree_rad;
 }
 
 // What the scans say of the place at which the last of them would be there.
@@ -187,13 +187,13 @@ std::optional<Relocation> Relocalizer::decide() {
   for (const Fit& fit : last.fits) {
     LoopCandidate& candidate = candidates_[fit.candidate];
     const Hypothesis place = gather(last, fit);
-    const double share = static_cast<double>(place.fits.size()) / kAgreeing;
+    const double share = static_cast<double>(place.fits.size()) / kScansNeeded;
     if (!credible(place)) {
       candidate.reason = "the places show different things";
       continue;
     }
     confidence_ = std::max(confidence_, std::min(1.0, share));
-    if (place.fits.size() < kAgreeing) {
+    if (place.fits.size() < kScansNeeded) {
       candidate.reason = "not yet borne out by other scans";
     } else if (has_rival(place)) {
       candidate.reason = "another place fits as well";
