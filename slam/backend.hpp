@@ -33,10 +33,10 @@ class Backend {
   /// created.
   /// `loops`: finds places seen before; empty for none.
   /// `earlier`: a session whose map is gone on with; empty for none. The sensor may be anywhere in
-  /// it: keyframes are held back until their place is found, as correction().placed tells, and what
-  /// follows is in the frame of that map. `session_file` then begins with that session, or is
-  /// itself gone on with if it is the same; until then neither is written. @throws InputError where
-  /// it cannot be read.
+  /// it: the last 500 keyframes are held back until their place is found, as correction().placed
+  /// tells, and what follows is in the frame of that map. `session_file` then begins with that
+  /// session, or is itself gone on with if it is the same; until then neither is written.
+  /// @throws InputError where it cannot be read.
   explicit Backend(const SlamConfig& config, const std::filesystem::path& session_file = {},
                    Clock clock = {}, LoopSource loops = {},
                    const std::filesystem::path& earlier = {});

@@ -18,6 +18,9 @@ namespace {
 constexpr double kBetween_m = 0.01;
 constexpr double kBetween_rad = 0.002;
 
+// Keyframes that wait for their place to be known: some 200 MB of them. The oldest go first.
+constexpr std::size_t kMostWaiting = 500;
+
 // What a scan sees, as what the last keyframe until then would: its number is that of the keyframe
 // that follows the scan, if the scan is none.
 LoopEdge edge_to_keyframe(const PlaceSighting& sighting, std::span<const Keyframe> keyframes) {
@@ -79,7 +82,9 @@ Keyframe Backend::renumbered(const Keyframe& keyframe) const {
 
 void Backend::search_place(const Keyframe& keyframe) {
   if (!search_->begin) search_->begin = keyframe.estimate.stamp;
-  if (!keyframe.probe) search_->waiting.push_back(keyframe);
+  std::vector<Keyframe>& waiting = search_->waiting;
+  if (!keyframe.probe) waiting.push_back(keyframe);
+  if (waiting.size() > kMostWaiting) waiting.erase(waiting.begin());
   const auto found = search_->relocalizer.locate(keyframe);
   correction_.confidence = search_->relocalizer.confidence();
   if (!found || search_->waiting.empty()) return;

@@ -158,6 +158,19 @@ TEST_F(BackendLoad, ElsewhereItSaysSoAndWhatWasHeldBackMakesAnotherMap) {
   EXPECT_EQ(poses.front().segment, 0U);
 }
 
+TEST_F(BackendLoad, WhatIsHeldBackIsBounded) {
+  Backend backend(config_, later_, {}, {}, earlier_);
+  for (std::uint64_t k = 0; k < 520; ++k) {
+    Keyframe keyframe;
+    keyframe.id = k;
+    keyframe.estimate.stamp.ns = static_cast<std::int64_t>(k) * 500'000'000;
+    backend.process(keyframe);
+  }
+  const std::vector<Keyframe> waiting = backend.give_up_search();
+  ASSERT_EQ(waiting.size(), 500U);
+  EXPECT_EQ(waiting.back().id, 519U) << "the newest are kept";
+}
+
 TEST_F(BackendLoad, AFileThatIsNoSessionIsRefused) {
   const auto file = directory_ / "text.glint";
   std::ofstream(file) << "not a session";

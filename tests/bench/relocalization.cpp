@@ -93,9 +93,6 @@ void wake(synth::Simulator& simulator, int scans, const std::vector<Pose>& map, 
     const double start_ms = thread_cpu_ms();
     const auto relocation = relocalizer.locate(*keyframe);
     figures.cpu_ms.push_back(thread_cpu_ms() - start_ms);
-      for (const auto& c : relocalizer.candidates())
-        fmt::print("  {} {} m {} in {} ov {:.2f} rms {:.3f} {}\n", i, c.from, c.matches, c.inliers,
-                   c.overlap, c.rms_m, c.reason);
     if (!relocation) continue;
     found = true;
     const Pose error = T_world_sensor.inverse() * relocation->T_map_sensor;
