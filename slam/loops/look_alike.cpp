@@ -19,8 +19,12 @@ constexpr float kGate_m = 0.1F;
 constexpr float kGateShare = 0.01F;
 constexpr int kMostBits = 64;
 // Edge of the cubes that planes are looked for in, to that of those which hold one point of each
-// keyframe.
+// keyframe: larger where few keyframes must do.
 constexpr float kKnownCubesPerVoxel = 2.0F;
+constexpr float kKnownCubesOfFew = 4.0F;
+constexpr std::size_t kFewKeyframes = 3;
+// About.
+constexpr std::size_t kPointsOfKeyframe = 2000;
 // Far ones are too coarse to be told apart. The gate there is within the cells searched.
 constexpr float kFarthestAlike_m = 20.0F;
 constexpr float kCell_m = 0.5F;
@@ -53,7 +57,9 @@ double chance_of(int count, int found, double share) {
 class Known {
  public:
   Known(const Place& base, std::span<const Place> around)
-      : surfaces_(kKnownCubesPerVoxel * base.voxel_m, 2000 * around.size()) {
+      : surfaces_(
+            base.voxel_m * (around.size() < kFewKeyframes ? kKnownCubesOfFew : kKnownCubesPerVoxel),
+            kPointsOfKeyframe * around.size()) {
     const Pose T_base_odom = base.T_odom_sensor.inverse();
     for (const Place& place : around) {
       const Pose T_base_place = T_base_odom * place.T_odom_sensor;

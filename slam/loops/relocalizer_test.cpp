@@ -110,6 +110,15 @@ TEST(Relocalizer, AGalleryOfTheSameMakeIsNotTheMaps) {
   }
 }
 
+TEST(Relocalizer, ABareGalleryOfTheSameMakeIsNotThePicturedOneOfTheMap) {
+  Awakening robot(2, 1);
+  robot.map_gallery(0);
+  for (const double from_m : {10.0, 18.0, 25.0}) {
+    EXPECT_FALSE(robot.walk(from_m, 1)) << from_m;
+    robot.relocalizer.begin_anew();
+  }
+}
+
 TEST(Relocalizer, OfTwoGalleriesOfTheSameMakeItIsTheOneWithThePicturesThatAreSeen) {
   Awakening robot(2, 2);
   robot.map_gallery(0);
