@@ -3,6 +3,7 @@
 #include "driver/udp_source.hpp"
 
 #include <gmock/gmock.h>
+#include <sched.h>
 
 #include <atomic>
 #include <chrono>
@@ -26,6 +27,25 @@ using test::UdpSender;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
+
+/// Keeps a thread on one processor: what it sends then arrives in that order. Where it moves to
+/// another one, a busy machine may deliver the later datagram first.
+class OnOneProcessor {
+ public:
+  OnOneProcessor() {
+    sched_getaffinity(0, sizeof before_, &before_);
+    cpu_set_t one;
+    CPU_ZERO(&one);
+    CPU_SET(static_cast<std::size_t>(sched_getcpu()), &one);
+    sched_setaffinity(0, sizeof one, &one);
+  }
+  ~OnOneProcessor() { sched_setaffinity(0, sizeof before_, &before_); }
+  OnOneProcessor(const OnOneProcessor&) = delete;
+  OnOneProcessor& operator=(const OnOneProcessor&) = delete;
+
+ private:
+  cpu_set_t before_{};
+};
 
 TEST(UdpSource, DatagramsComeWithPortAndTimeOfArrival) {
   UdpSource source(any_port());
@@ -86,6 +106,7 @@ TEST(UdpSource, BothPortsComeInTheOrderOfArrival) {
   options.imu_port = free_port();
   UdpSource source(options);
   const UdpSender sender;
+  const OnOneProcessor in_order;
   for (int i = 0; i < 30; ++i) {
     const bool imu = i % 3 == 2;
     ASSERT_TRUE(sender.send(imu ? options.imu_port : source.lidar_port(), payload(100, i)));
@@ -106,6 +127,7 @@ TEST(UdpSource, BothPortsComeInTheOrderOfArrivalWhenManyWait) {
   options.imu_port = free_port();
   UdpSource source(options);
   const UdpSender sender;
+  const OnOneProcessor in_order;
   for (int i = 0; i < 100; ++i) {
     const bool imu = i % 45 == 44;
     ASSERT_TRUE(sender.send(imu ? options.imu_port : source.lidar_port(), payload(100, i)));
@@ -122,6 +144,7 @@ TEST(UdpSource, BothPortsComeInTheOrderOfArrivalWhileMoreArrive) {
   std::atomic<int> read = 0;
   std::thread sending([&] {
     const UdpSender sender;
+    const OnOneProcessor in_order;
     for (int i = 0; i < kPackets; ++i) {
       while (i - read > 50) std::this_thread::yield();
       sender.send(i % 2 == 0 ? options.imu_port : source.lidar_port(), payload(100, i));
