@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "daemon/protocol_pose.hpp"
+#include "driver/core/error.hpp"
 
 namespace glint::daemon {
 namespace {
@@ -15,10 +16,8 @@ namespace {
 constexpr std::chrono::milliseconds kKeyframeWait{100};
 
 // What has happened to the map.
-const char* action_between(const slam::MapCorrection& before, const slam::MapCorrection& now,
-                           const slam::MapSnapshot& map) {
+const char* action_between(const slam::MapCorrection& before, const slam::MapCorrection& now) {
   if (!now.placed) return "loaded";
-  if (map.keyframe_count == 0) return "cleared";
   return before.placed ? "corrected" : "located";
 }
 
@@ -98,7 +97,7 @@ void BackendThread::change_map(const MapChange& change) {
   }
   backend_->begin_at_epoch(before.epoch + 1);
   if (sensor_) backend_->use_sensor(*sensor_);
-  tell(before);
+  tell(before, change.plan.earlier.empty() ? "cleared" : "loaded");
   change.job->done(Json{{"keyframes", backend_->snapshot()->keyframe_count},
                         {"map_epoch", backend_->correction().epoch}});
 }
@@ -109,17 +108,22 @@ void BackendThread::begin_another_map() {
   const std::vector<slam::Keyframe> waiting = backend_->give_up_search();
   plan_.earlier.clear();
   plan_.file = plan_.otherwise;
-  backend_ = make_backend();
+  try {
+    backend_ = make_backend();
+  } catch (const InputError& error) {
+    spdlog::error("no session is kept: {}", error.what());
+    plan_.file.clear();
+    backend_ = make_backend();
+  }
   backend_->begin_at_epoch(before.epoch + 1);
   if (sensor_) backend_->use_sensor(*sensor_);
   spdlog::warn("the sensor was not found in the map for {:.0f} s: a map of its own is begun",
                plan_.search_s);
-  events_.post({"map", 0, {{"action", "begun"}, {"map_epoch", before.epoch + 1}}});
   for (const slam::Keyframe& keyframe : waiting) {
     backend_->process(keyframe);
     heartbeat_.beat();
   }
-  tell(before);
+  tell(before, "begun");
 }
 
 // Keyframes may be long in coming, but what the disk does not take is told at once.
@@ -146,7 +150,8 @@ void BackendThread::correct_last_snapshot() {
   events_.post({"epoch", 0, epoch_json(*corrected)});
 }
 
-void BackendThread::tell(const slam::MapCorrection& before) {
+// `action`: what has happened to the map, where it does not follow from the two corrections.
+void BackendThread::tell(const slam::MapCorrection& before, const char* action) {
   publish();
   for (const slam::LoopReport& report : backend_->loop_reports()) {
     Json fields = Json::object();
@@ -164,7 +169,7 @@ void BackendThread::tell(const slam::MapCorrection& before) {
   const slam::MapSnapshot& map = *backend_->snapshot();
   events_.post({"map",
                 0,
-                {{"action", action_between(before, now, map)},
+                {{"action", action != nullptr ? action : action_between(before, now)},
                  {"map_epoch", map.epoch},
                  {"revision", map.revision},
                  {"points", map.point_count},

@@ -33,7 +33,7 @@ class BackendThread {
   [[nodiscard]] std::unique_ptr<slam::Backend> make_backend() const;
   void change_map(const MapChange& change);
   void begin_another_map();
-  void tell(const slam::MapCorrection& before);
+  void tell(const slam::MapCorrection& before, const char* action = nullptr);
   [[nodiscard]] bool commit_session();
   void correct_last_snapshot();
   void publish();

@@ -22,7 +22,7 @@ struct SessionPlan {
 /// new_session_file().
 SessionPlan plan_session(const Config& config);
 
-/// A session of its own, with an empty map.
+/// A session of its own, with an empty map. @throws ConfigError as new_session_file().
 SessionPlan plan_session_anew(const Config& config);
 
 /// A session that goes on with the map of `earlier`, which is left as it is.

@@ -271,9 +271,12 @@ void Backend::publish() {
 }
 
 std::uint64_t Backend::keyframes_not_stored() const {
+  if (!no_session_because_.empty()) return graph_.nodes().size();
   return store_ ? store_->missing_keyframes() : 0;
 }
 
-std::string_view Backend::store_error() const { return store_ ? store_->error() : ""; }
+std::string_view Backend::store_error() const {
+  return store_ ? store_->error() : std::string_view(no_session_because_);
+}
 
 }  // namespace glint::slam

@@ -77,7 +77,9 @@ class Backend {
   /// What the last call took (kPgo; kBackend is all of it).
   [[nodiscard]] const StageTimes& stage_times() const { return times_; }
   /// Writes of the session file that failed, and why the last one did; they are tried again.
-  [[nodiscard]] std::uint64_t store_failures() const { return store_ ? store_->failures() : 0; }
+  [[nodiscard]] std::uint64_t store_failures() const {
+    return store_ ? store_->failures() : static_cast<std::uint64_t>(!no_session_because_.empty());
+  }
   [[nodiscard]] std::string_view store_error() const;
   /// Keyframes that the session file lacks for it.
   [[nodiscard]] std::uint64_t keyframes_not_stored() const;
@@ -118,6 +120,7 @@ class Backend {
   MovingPoints moving_;
   std::optional<VoxelMap> map_;  ///< Made with the first keyframe, whose ranges set the voxels.
   std::unique_ptr<SessionStore> store_;
+  std::string no_session_because_;            ///< Why there is none after the place was found.
   std::shared_ptr<const SensorInfo> sensor_;  ///< For a session that is yet to be made.
   std::optional<PlaceSearch> search_;         ///< While the sensor's place is not known.
   /// What makes the numbers of keyframes and segments those of the map.

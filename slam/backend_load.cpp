@@ -3,9 +3,9 @@
 //
 // How a back end goes on with the map of an earlier session.
 #include <algorithm>
-#include <charconv>
 #include <utility>
 
+#include "driver/core/error.hpp"
 #include "slam/backend.hpp"
 #include "slam/loops/vocabulary.hpp"
 #include "slam/store/session_copy.hpp"
@@ -88,9 +88,6 @@ void Backend::search_place(const Keyframe& keyframe) {
   const auto found = search_->relocalizer.locate(keyframe);
   correction_.confidence = search_->relocalizer.confidence();
   if (!found || search_->waiting.empty()) return;
-  for (const LoopCandidate& candidate : search_->relocalizer.candidates()) {
-    if (candidate.accepted) loop_reports_.push_back({stamp_, candidate, {}, {}, {}});
-  }
   settle_down(*found, keyframe.estimate.T_odom_sensor);
 }
 
@@ -114,20 +111,25 @@ void Backend::settle_down(const Relocation& found, const Pose& T_odom_sensor) {
     const auto same = [&](const LoopEdge& e) { return e.from == edge.from && e.to == edge.to; };
     if (std::ranges::none_of(edges, same)) edges.push_back(edge);
   }
-  loop_reports_.clear();
   take_loops(edges);
   correct({graph_.poses().begin(), graph_.poses().end()});
 }
 
-// The session goes on in a file of its own, unless it is the same one.
+// The session goes on in a file of its own, unless it is the same one. Where that cannot be, the
+// disk being full or the earlier session gone, the map goes on without.
 void Backend::continue_session(const std::filesystem::path& session) {
   if (session_file_.empty()) return;
-  std::error_code ignored;
-  if (!std::filesystem::equivalent(session, session_file_, ignored)) {
-    copy_session(session, session_file_, clock_);
+  try {
+    std::error_code ignored;
+    if (!std::filesystem::equivalent(session, session_file_, ignored)) {
+      copy_session(session, session_file_, clock_);
+    }
+    store_ = std::make_unique<SessionStore>(
+        session_file_, SessionStoreOptions{.continues = true, .clock = clock_});
+  } catch (const InputError& error) {
+    no_session_because_ = error.what();
+    return;
   }
-  store_ = std::make_unique<SessionStore>(session_file_,
-                                          SessionStoreOptions{.continues = true, .clock = clock_});
   if (sensor_) store_->set_sensor(*sensor_);
 }
 

@@ -158,6 +158,18 @@ TEST_F(BackendLoad, ElsewhereItSaysSoAndWhatWasHeldBackMakesAnotherMap) {
   EXPECT_EQ(poses.front().segment, 0U);
 }
 
+TEST_F(BackendLoad, WhereTheEarlierSessionIsGoneTheMapGoesOnWithoutOneAndSaysSo) {
+  Backend backend(config_, later_, {}, {}, earlier_);
+  std::filesystem::remove(earlier_);
+  for (std::uint64_t k = 0; k < 8; ++k) backend.process(awake(k));
+  ASSERT_TRUE(backend.correction().placed);
+  EXPECT_LT(error_m(backend.correction(), 7), 0.08);
+  EXPECT_EQ(backend.session_file(), "");
+  EXPECT_EQ(backend.store_failures(), 1U);
+  EXPECT_NE(backend.store_error().find("earlier.glint"), std::string_view::npos);
+  EXPECT_EQ(backend.keyframes_not_stored(), walked_ + 8);
+}
+
 TEST_F(BackendLoad, WhatIsHeldBackIsBounded) {
   Backend backend(config_, later_, {}, {}, earlier_);
   for (std::uint64_t k = 0; k < 520; ++k) {
