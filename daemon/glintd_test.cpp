@@ -7,7 +7,6 @@
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/un.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
@@ -19,9 +18,8 @@
 #include <thread>
 
 #include "daemon/client.hpp"
-#include "daemon/test_room.hpp"
+#include "daemon/test_glintd.hpp"
 #include "driver/test_udp.hpp"
-#include "pcap/capture_writer.hpp"
 #include "slam/store/session_reader.hpp"
 
 namespace glint::daemon {
@@ -30,47 +28,6 @@ namespace {
 namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
-
-std::string read_file(const fs::path& file) {
-  std::ifstream in(file);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-/// A glintd on its own, its standard error in a file.
-class Process {
- public:
-  Process(std::vector<std::string> arguments, const fs::path& directory)
-      : log_(directory / "stderr.txt") {
-    arguments.insert(arguments.begin(), GLINTD);
-    std::vector<char*> argv;
-    for (std::string& a : arguments) argv.push_back(a.data());
-    argv.push_back(nullptr);
-    pid_ = fork();
-    if (pid_ != 0) return;
-    if (std::freopen(log_.c_str(), "w", stderr) == nullptr) _exit(126);
-    execv(GLINTD, argv.data());
-    _exit(127);
-  }
-  ~Process() {
-    if (pid_ > 0) kill(pid_, SIGKILL);
-    if (pid_ > 0) waitpid(pid_, nullptr, 0);
-  }
-  Process(const Process&) = delete;
-  Process& operator=(const Process&) = delete;
-
-  void signal(int number) const { kill(pid_, number); }
-  int wait() {
-    int status = 0;
-    waitpid(pid_, &status, 0);
-    pid_ = -1;
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-  [[nodiscard]] std::string log() const { return read_file(log_); }
-
- private:
-  const fs::path log_;
-  pid_t pid_ = -1;
-};
 
 /// A UDP port of this machine, held as long as this lives.
 class HeldPort {
@@ -94,99 +51,6 @@ class HeldPort {
  private:
   int socket_;
   int port_ = 0;
-};
-
-class GlintdTest : public testing::Test {
- protected:
-  void SetUp() override {
-    directory_ = fs::path(testing::TempDir()) /
-                 ("glintd_test_" + std::to_string(getpid()) + "_" +
-                  testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(directory_);
-    // Free of what the test's own surroundings may have set.
-    for (const char* name : {"NOTIFY_SOCKET", "STATE_DIRECTORY", "RUNTIME_DIRECTORY",
-                             "JOURNAL_STREAM", "WATCHDOG_USEC", "WATCHDOG_PID"}) {
-      unsetenv(name);
-    }
-  }
-  void TearDown() override { fs::remove_all(directory_); }
-
-  fs::path write_capture(int scans) {
-    const SensorInfo info = test::room_sensor();
-    std::ofstream(directory_ / "room.json") << to_metadata_json(info);
-    CaptureWriter writer(directory_ / "room.pcap");
-    std::int64_t time_ns = 1'000'000'000;
-    for (const test::Bytes& packet : test::room_packets(info, scans)) {
-      writer.write({time_ns += 3'000'000}, {IpAddress::v4(10, 0, 0, 2), 7502},
-                   {IpAddress::v4(10, 0, 0, 1), 7502}, packet);
-    }
-    writer.finish();
-    return directory_ / "room.pcap";
-  }
-
-  [[nodiscard]] std::string socket() const { return (directory_ / "g.sock").string(); }
-
-  /// Arguments for a daemon that serves a capture on the Unix socket only.
-  std::vector<std::string> serve_capture(int scans) {
-    return {"--source", "pcap:" + write_capture(scans).string(),
-            "--rate",   "max",
-            "--set",    "server.listen=",
-            "--set",    "server.unix_socket=" + socket(),
-            "--set",    "state.directory=" + (directory_ / "state").string()};
-  }
-
-  /// Arguments for a daemon that walks through a world, four times as fast as one would, and goes
-  /// on with the latest map.
-  [[nodiscard]] std::vector<std::string> walk(const std::string& world) const {
-    return {"--source", "synth:" + world + ",seconds=30,columns=512,beams=32",
-            "--rate",   "4",
-            "--set",    "server.listen=",
-            "--set",    "server.unix_socket=" + socket(),
-            "--set",    "state.directory=" + (directory_ / "state").string(),
-            "--set",    "map.on_start=continue",
-            "--set",    "map.search_s=6"};
-  }
-
-  /// Arguments for a daemon that waits for a sensor where there is none.
-  [[nodiscard]] std::vector<std::string> await_sensor(const std::string& port) const {
-    return {"--config", "/dev/null",
-            "--set",    "sensor.host=127.0.0.1:1",
-            "--set",    "sensor.lidar_port=" + port,
-            "--set",    "sensor.imu_port=" + port,
-            "--set",    "server.listen=",
-            "--set",    "server.unix_socket=" + socket(),
-            "--set",    "state.directory=" + (directory_ / "state").string()};
-  }
-
-  /// The first answer for which `done` holds; null after ten seconds.
-  template <class Done>
-  Json poll_status(Done done) {
-    return poll_status(done, socket());
-  }
-  template <class Done>
-  Json poll_status(Done done, const std::string& address) {
-    for (int i = 0; i < 500; ++i) {
-      try {
-        Client client(address);
-        Json status = client.call("get_status");
-        if (done(status)) return status;
-      } catch (const ClientError&) {
-        // Not up yet.
-      }
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    }
-    return nullptr;
-  }
-
-  int exit_code(const std::vector<std::string>& arguments) {
-    Process process(arguments, directory_);
-    const int code = process.wait();
-    log_ = process.log();
-    return code;
-  }
-
-  fs::path directory_;
-  std::string log_;
 };
 
 TEST_F(GlintdTest, ServesACaptureToItsEndAndStopsCleanly) {
@@ -253,78 +117,6 @@ TEST_F(GlintdTest, StoppingWhileAMapIsSavedLeavesAWholeOneOrNone) {
   } else {
     EXPECT_GT(slam::SessionReader(maps / "office.glint").keyframe_count(), 0U);
   }
-}
-
-TEST_F(GlintdTest, AfterAKillItFindsItselfInItsMapAndGoesOnInTheSameFrame) {
-  constexpr int kMapped = 12;
-  std::string session;
-  {
-    Process process(walk("room"), directory_);
-    const Json status = poll_status([](const Json& s) { return s["map"]["keyframes"] > kMapped; });
-    ASSERT_FALSE(status.is_null()) << process.log();
-    session = status["session_file"];
-    std::this_thread::sleep_for(std::chrono::seconds(1));
-    process.signal(SIGKILL);
-    process.wait();
-  }
-  Process process(walk("room"), directory_);
-  const Json waking = poll_status([](const Json& s) { return s["state"] == "LOCALIZING"; });
-  ASSERT_FALSE(waking.is_null()) << process.log();
-  EXPECT_EQ(waking["session_file"], "");
-  EXPECT_TRUE(waking.contains("localization"));
-  const int known = waking["map"]["keyframes"];
-  EXPECT_GE(known, kMapped);
-  const Json found = poll_status(
-      [&](const Json& s) { return s["state"] == "TRACKING" && s["map"]["keyframes"] > known; });
-  ASSERT_FALSE(found.is_null()) << process.log();
-  EXPECT_EQ(found["session_file"], session);
-  // The same walk: it began where the map's frame does.
-  Client client(socket());
-  const Json path = client.call("get_trajectory")["poses"];
-  ASSERT_FALSE(path.empty());
-  for (const Json& x_m : path[0]["p_m"]) EXPECT_LT(std::abs(x_m.get<double>()), 0.1);
-  process.signal(SIGTERM);
-  EXPECT_EQ(process.wait(), 0);
-  EXPECT_THAT(process.log(), HasSubstr("going on with the map of " + session));
-}
-
-TEST_F(GlintdTest, AMapThatWasSavedIsLoadedAndTheSensorFoundInIt) {
-  Process process(walk("room"), directory_);
-  ASSERT_FALSE(poll_status([](const Json& s) { return s["map"]["keyframes"] > 15; }).is_null());
-  Client client(socket());
-  const auto idle = [](const Json& s) { return s["jobs"][0]["state"] == "done"; };
-  client.call("save_map", {{"name", "room"}});
-  ASSERT_FALSE(poll_status(idle).is_null()) << process.log();
-  client.call("load_map", {{"name", "room"}});
-  const Json found = poll_status([&](const Json& s) {
-    return idle(s) && s["jobs"][0]["kind"] == "load_map" && s["state"] == "TRACKING" &&
-           s["session_file"] != "";
-  });
-  ASSERT_FALSE(found.is_null()) << process.log();
-  EXPECT_EQ(fs::path(found["session_file"].get<std::string>()).parent_path().filename(), "state");
-}
-
-TEST_F(GlintdTest, WhereItsMapIsNotItBeginsAnother) {
-  std::string session;
-  {
-    Process process(walk("room"), directory_);
-    const Json status = poll_status([](const Json& s) { return s["map"]["keyframes"] > 5; });
-    ASSERT_FALSE(status.is_null()) << process.log();
-    session = status["session_file"];
-    process.signal(SIGTERM);
-    process.wait();
-  }
-  const auto bytes = fs::file_size(session);
-  Process process(walk("corridor"), directory_);
-  ASSERT_FALSE(poll_status([](const Json& s) { return s["state"] == "LOCALIZING"; }).is_null());
-  const Json status = poll_status([](const Json& s) { return s["state"] == "TRACKING"; });
-  ASSERT_FALSE(status.is_null()) << process.log();
-  EXPECT_NE(status["session_file"], session);
-  EXPECT_TRUE(fs::exists(status["session_file"].get<std::string>()));
-  EXPECT_EQ(fs::file_size(session), bytes);
-  process.signal(SIGTERM);
-  EXPECT_EQ(process.wait(), 0);
-  EXPECT_THAT(process.log(), HasSubstr("a map of its own is begun"));
 }
 
 TEST_F(GlintdTest, TwoSensorsOnOnePortReachTheirOwnDaemonsOnly) {

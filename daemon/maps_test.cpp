@@ -140,6 +140,8 @@ TEST_F(MapsTest, AClearedMapIsEmptyAndItsSessionStays) {
   map_scans(6);
   const Json before = client().call("get_status");
   const int kept = before["map"]["keyframes"];
+  Client watching(daemon_->address());
+  watching.call("subscribe", {{"topics", {"events"}}});
   const Json reply = client().call("clear_map");
   ASSERT_EQ(wait_for_end(reply["job"]["id"].get<int>())["state"], "done");
   ASSERT_TRUE(daemon_->wait_for(
@@ -150,6 +152,10 @@ TEST_F(MapsTest, AClearedMapIsEmptyAndItsSessionStays) {
   EXPECT_NE(after["session_file"], before["session_file"]);
   EXPECT_EQ(slam::SessionReader(before["session_file"].get<std::string>()).keyframe_count(), kept);
   EXPECT_EQ(client().call("get_map")["tiles"], Json::array());
+  Json event = Json::object();
+  while (event.value("kind", "") != "map") event = watching.next_message(5s)["params"];
+  EXPECT_EQ(event["action"], "cleared");
+  EXPECT_EQ(event["map_epoch"], after["map_epoch"]);
 }
 
 TEST_F(MapsTest, SavingAnswersAtOnceAndGivesAFileWithEveryKeyframe) {

@@ -45,7 +45,7 @@ class Backend {
   Backend& operator=(const Backend&) = delete;
 
   /// Before the first keyframe: the first epoch, when there was another map before.
-  void begin_at_epoch(std::uint32_t epoch) { correction_.epoch = epoch; }
+  void begin_at_epoch(std::uint32_t epoch);
   /// Where the session is kept; empty while it is nowhere.
   [[nodiscard]] std::filesystem::path session_file() const {
     return store_ ? session_file_ : std::filesystem::path();

@@ -46,6 +46,13 @@ LoopEdge edge_to_keyframe(const PlaceSighting& sighting, std::span<const Keyfram
 
 }  // namespace
 
+void Backend::begin_at_epoch(std::uint32_t epoch) {
+  correction_.epoch = epoch;
+  auto snapshot = std::make_shared<MapSnapshot>(*snapshot_);
+  snapshot->epoch = epoch;
+  snapshot_ = std::move(snapshot);
+}
+
 void Backend::load(const std::filesystem::path& session) {
   const SessionReader reader(session);
   PlaceSearch search{session, Relocalizer(open_vocabulary(config_.vocabulary)), {}, {}};
