@@ -276,7 +276,7 @@ std::uint64_t Backend::keyframes_not_stored() const {
 }
 
 std::string_view Backend::store_error() const {
-  return store_ ? store_->error() : std::string_view(no_session_because_);
+  return store_ ? store_->error() : std::string_view{no_session_because_};
 }
 
 }  // namespace glint::slam
