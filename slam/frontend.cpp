@@ -212,7 +212,8 @@ void Frontend::Impl::accept(const Registration& motion, const LidarScan& scan) {
 // What foretells the next motions: how well this one was foretold, and the gyroscope's bias.
 void Frontend::Impl::learn_from(const Registration& motion, double dt_s) {
   prior.open_along(open_axes(weak_axes));
-  state = prior.learn(prediction, motion.T_reference_current, reference.T_odom_scan.rotation, dt_s);
+  state = prior.learn(prediction, motion.T_reference_current, reference.T_odom_scan.rotation, dt_s,
+                      {motion.covariance, prediction_took_part});
   if (!prediction.by_accelerometer && !predictable(dt_s)) {
     prior.stop();
     state = {};

@@ -103,6 +103,7 @@ struct Frontend::Impl {
   Features current;
   std::vector<Pose> T_reference_column;  // Of the scan's columns; empty where it is rigid.
   PredictedMotion prediction;
+  bool prediction_took_part = false;  // In the motion that was found.
   WeakAxes weak_axes;
   BlindDrift blind_drift;
   SensorTime current_time;

@@ -165,6 +165,7 @@ bool Frontend::Impl::correct_by_map(const LidarScan& scan, bool registered, Regi
   if (!optimizer) return registered;
   const StageTimer timer(clock, times, Stage::kMapOptimization);
   if (!registered) matches.clear();
+  prediction_took_part = false;
   MapOptimization result = optimize_by_map(scan, motion);
   Registration corrected = motion;
   corrected.T_reference_current = reference.T_odom_scan.inverse() * result.T_odom_scan;
@@ -179,6 +180,7 @@ bool Frontend::Impl::correct_by_map(const LidarScan& scan, bool registered, Regi
   corrected.covariance = result.covariance;
   if (!plausible(corrected, seconds_since(reference))) return registered;
   motion = corrected;
+  prediction_took_part = config.motion_prior;
   weak_axes = result.weak_axes;
   return true;
 }
@@ -189,7 +191,7 @@ MapOptimization Frontend::Impl::optimize_by_map(const LidarScan& scan, const Reg
   std::optional<PosePrior> pose_prior;
   if (config.motion_prior) {
     pose_prior = {reference.T_odom_scan * prediction.T_reference_current, prediction.information,
-                  prediction.by_gyro};
+                  prediction.held_information(), prediction.by_gyro};
   }
   return optimizer->optimize(current, matches, start, pose_prior);
 }

@@ -16,6 +16,8 @@ struct PosePrior {
   Pose T_odom_scan;
   /// Translation then rotation, right perturbation; in the units of the terms' weights.
   Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
+  /// Besides, but only along axes that surfaces hold: optimize_jointly() takes `information` alone.
+  Eigen::Matrix<double, 6, 6> held_information = Eigen::Matrix<double, 6, 6>::Zero();
   bool turn_is_measured = false;  ///< By a gyroscope; else it was only expected to go on.
 };
 

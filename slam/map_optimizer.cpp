@@ -84,6 +84,12 @@ double beam_turn_radps(const SensorInfo& info, const XyzLut& lut) {
   return (a.x() * b.y() - a.y() * b.x() > 0 ? 2.0 : -2.0) * std::numbers::pi / turn_s;
 }
 
+// Of the whole prior, where surfaces hold what `projection` leaves.
+Eigen::Matrix<double, 6, 6> information_of(const PosePrior& prior,
+                                           const Eigen::Matrix<double, 6, 6>& projection) {
+  return prior.information + projection.transpose() * prior.held_information * projection;
+}
+
 }  // namespace
 
 MapOptimizer::MapOptimizer(const SensorInfo& info, const SlamConfig& config,
@@ -116,10 +122,7 @@ MapOptimization MapOptimizer::optimize(const Features& features, const std::vect
   Pose pose = start;
   JointResult result;
   JointTerms terms;
-  if (prior) {
-    terms.prior = prior;
-    terms.prior->information *= kUnit_m2;
-  }
+  if (prior) terms.prior = prior;
   for (int round = 0; round < config_.map_rounds; ++round) {
     if (round == 0) {
       map_->associate(points_m_, ground_count_, pose, planes_);
@@ -131,6 +134,7 @@ MapOptimization MapOptimizer::optimize(const Features& features, const std::vect
     if (planes_.size() + points_.size() < kFewestJointTerms) return outcome;
     terms.planes = planes_;
     if (config_.degeneracy) leave_open(pose, terms, outcome.weak_axes);
+    if (prior) terms.prior->information = kUnit_m2 * information_of(*prior, terms.plane_projection);
     if (patches_) {
       if (round == 0) pose = place_by_patches(pose, outcome.weak_axes, prior);
       ask_patches(pose, outcome.weak_axes, terms);

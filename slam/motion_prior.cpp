@@ -29,8 +29,6 @@ constexpr double kPose_m = 0.005;
 // Where only keypoints tell: some belong to what moves with the sensor.
 constexpr double kOpenPose_m = 0.02;
 constexpr double kUnknownVelocity_mps = 2.0;
-// Gravity follows by this share of what it would explain of a scan's error.
-constexpr double kGravityGain = 0.01;
 constexpr double kStandardGravity_mps2 = 9.80665;
 
 double followed(double rms, double latest, double least, double largest) {
@@ -63,7 +61,13 @@ double PredictedMotion::largest_sigma_m() const {
   return 1.0 / std::sqrt(eigen.eigenvalues()(0));
 }
 
+Eigen::Matrix<double, 6, 6> PredictedMotion::held_information() const {
+  if (!by_accelerometer) return Eigen::Matrix<double, 6, 6>::Zero();
+  return filtered.information();
+}
+
 void MotionPrior::stop() {
+  filter_.reset();
   gravity_mps2_.setZero();
   velocity_.setZero();
   open_.setZero();
@@ -101,7 +105,12 @@ PredictedMotion MotionPrior::predict(SensorTime from, SensorTime to, double span
           back * (velocity_.head<3>() + span_s * before.gravity_mps2 + measured->velocity_mps);
     }
     if (span_s > 0) predicted.state.velocity.tail<3>() = so3_log(measured->turn) / span_s;
-    sigma_rad = kGyroFloor_rad + imu->turn_sigma_rad(span_s, so3_log(measured->turn).norm());
+    const double turn_sigma_rad = imu->turn_sigma_rad(span_s, so3_log(measured->turn).norm());
+    sigma_rad = kGyroFloor_rad + turn_sigma_rad;
+    if (predicted.by_accelerometer) {
+      predicted.filtered = filter_.predict(predicted.T_reference_current, span_s,
+                                           before.gravity_mps2, R_odom_reference, turn_sigma_rad);
+    }
   } else {
     predicted.T_reference_current = se3_exp(velocity_ * span_s);
     predicted.state.velocity = velocity_;
@@ -131,42 +140,53 @@ MotionState MotionPrior::state_after(const PredictedMotion& predicted,
     state.velocity = se3_log(T_reference_current) / span_s;
     return state;
   }
-  const Eigen::Vector3d more_m =
-      T_reference_current.translation_m - predicted.T_reference_current.translation_m;
+  const Twist off = se3_log(predicted.T_reference_current.inverse() * T_reference_current);
+  return corrected(predicted, MotionFilter::tempered(predicted.filtered, off), off,
+                   R_odom_reference * T_reference_current.rotation, span_s);
+}
+
+// By what is believed of `off`, and by all of it along open axes: motions are found less surely
+// there than they seem, and a filter of its own follows them.
+MotionState MotionPrior::corrected(const PredictedMotion& predicted, const Twist& believed,
+                                   const Twist& off, const Eigen::Quaterniond& R_odom_scan,
+                                   double span_s) const {
+  MotionState state = predicted.state;
+  const Eigen::Matrix3d R_odom_current = R_odom_scan.toRotationMatrix();
+  const Eigen::Vector3d held_mps =
+      R_odom_current * MotionFilter::correction(predicted.filtered, believed).velocity_mps;
+  const Eigen::Vector3d open_mps = velocity_gain(open_velocity_variance_, kOpenPose_m, span_s) /
+                                   span_s * (R_odom_current * off.head<3>());
   state.velocity.head<3>() +=
-      T_reference_current.rotation.conjugate() *
-      (R_odom_reference.conjugate() * velocity_learned(R_odom_reference * more_m, span_s));
+      R_odom_current.transpose() * (held_mps + open_ * (open_mps - held_mps));
   return state;
 }
 
 MotionState MotionPrior::learn(const PredictedMotion& predicted, const Pose& T_reference_current,
-                               const Eigen::Quaterniond& R_odom_reference, double span_s) {
+                               const Eigen::Quaterniond& R_odom_reference, double span_s,
+                               const FoundMotion& found) {
   MotionState state = state_after(predicted, T_reference_current, R_odom_reference, span_s);
+  const Twist off = se3_log(predicted.T_reference_current.inverse() * T_reference_current);
+  if (predicted.by_accelerometer && span_s > 0.0) {
+    state = corrected(predicted, off, off, R_odom_reference * T_reference_current.rotation, span_s);
+  }
   velocity_ = state.velocity;
   if (span_s <= 0.0) return state;
-  const Pose off = predicted.T_reference_current.inverse() * T_reference_current;
   const Eigen::Matrix3d held = Eigen::Matrix3d::Identity() - open_;
-  const Eigen::Quaterniond R_odom_current = R_odom_reference * T_reference_current.rotation;
-  Twist innovation = se3_log(off);
-  innovation.head<3>() =
-      R_odom_current.conjugate() * (held * (R_odom_current * innovation.head<3>()));
+  const Eigen::Matrix3d R_odom_current =
+      (R_odom_reference * T_reference_current.rotation).toRotationMatrix();
+  Twist innovation = off;
+  innovation.head<3>() = R_odom_current.transpose() * (held * (R_odom_current * off.head<3>()));
   follow_accelerations(predicted, innovation, span_s);
   if (!predicted.by_accelerometer) return state;
   velocity_variance_ = variance_left(velocity_variance_, kPose_m, span_s);
   open_velocity_variance_ = variance_left(open_velocity_variance_, kOpenPose_m, span_s);
-  const Eigen::Vector3d more_m =
-      T_reference_current.translation_m - predicted.T_reference_current.translation_m;
-  gravity_mps2_ +=
-      std::min(1.0, kGravityGain / span_s) / span_s * (held * (R_odom_reference * more_m));
+  gravity_mps2_ += held * MotionFilter::correction(predicted.filtered, off).gravity_mps2;
+  filter_.learn(predicted.filtered, innovation, found.covariance, found.prediction_took_part);
+  if (!open_.isZero(0.0)) {
+    filter_.distrust(R_odom_current.transpose() * open_ * R_odom_current, kOpenPose_m * kOpenPose_m,
+                     open_velocity_variance_);
+  }
   return state;
-}
-
-// By so much farther the sensor went than was foretold; odometry frame.
-Eigen::Vector3d MotionPrior::velocity_learned(const Eigen::Vector3d& more_m, double span_s) const {
-  const Eigen::Vector3d open_m = open_ * more_m;
-  return (velocity_gain(velocity_variance_, kPose_m, span_s) * (more_m - open_m) +
-          velocity_gain(open_velocity_variance_, kOpenPose_m, span_s) * open_m) /
-         span_s;
 }
 
 void MotionPrior::follow_accelerations(const PredictedMotion& predicted, const Twist& innovation,

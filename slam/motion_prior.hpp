@@ -7,6 +7,7 @@
 #include "driver/core/pose.hpp"
 #include "driver/core/time.hpp"
 #include "slam/imu_track.hpp"
+#include "slam/motion_filter.hpp"
 #include "slam/scan_motion.hpp"
 
 namespace glint::slam {
@@ -16,12 +17,25 @@ struct PredictedMotion {
   Pose T_reference_current;
   /// Of T_reference_current: translation then rotation, right perturbation, 1/m^2 and 1/rad^2.
   Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
-  MotionState state;              ///< Then, current frame.
-  bool by_gyro = false;           ///< The turn was measured.
-  bool by_accelerometer = false;  ///< So was the change of velocity.
+  MotionState state;                  ///< Then, current frame.
+  bool by_gyro = false;               ///< The turn was measured.
+  bool by_accelerometer = false;      ///< So was the change of velocity.
+  MotionFilter::Prediction filtered;  ///< Only by_accelerometer.
+
+  /// As sure as the motion is along the axes that surfaces hold, where `information` is for those
+  /// that they leave open: what keypoints tell there is not good to what they show. Zero unless
+  /// by_accelerometer.
+  [[nodiscard]] Eigen::Matrix<double, 6, 6> held_information() const;
 
   /// Of the way, along the axis that is known least.
   [[nodiscard]] double largest_sigma_m() const;
+};
+
+/// How sure a motion is that was found.
+struct FoundMotion {
+  /// Translation then rotation, right perturbation, m^2 and rad^2.
+  Eigen::Matrix<double, 6, 6> covariance;
+  bool prediction_took_part = false;  ///< In the motion, and in its covariance.
 };
 
 /// Foretells the next scan's pose: as the IMU measured the motion where there is one, else at a
@@ -45,7 +59,8 @@ class MotionPrior {
                                         double span_s) const;
   /// The same, and it is what the next motion follows.
   MotionState learn(const PredictedMotion& predicted, const Pose& T_reference_current,
-                    const Eigen::Quaterniond& R_odom_reference, double span_s);
+                    const Eigen::Quaterniond& R_odom_reference, double span_s,
+                    const FoundMotion& found);
   /// From now on motions are found without surfaces along the axes that this projects onto
   /// (odometry frame): less is learned from them, and more slowly.
   void open_along(const Eigen::Matrix3d& axes);
@@ -56,12 +71,14 @@ class MotionPrior {
   void stop();
 
  private:
-  [[nodiscard]] Eigen::Vector3d velocity_learned(const Eigen::Vector3d& more_m,
-                                                 double span_s) const;
+  [[nodiscard]] MotionState corrected(const PredictedMotion& predicted, const Twist& believed,
+                                      const Twist& off, const Eigen::Quaterniond& R_odom_scan,
+                                      double span_s) const;
   void follow_accelerations(const PredictedMotion& predicted, const Twist& innovation,
                             double span_s);
 
   bool accelerometer_;
+  MotionFilter filter_;
   Eigen::Vector3d gravity_mps2_ = Eigen::Vector3d::Zero();  ///< Odometry frame; zero: unknown.
   Twist velocity_ = Twist::Zero();                          ///< Frame of the last scan.
   Eigen::Matrix3d open_ = Eigen::Matrix3d::Zero();          ///< See open_along().
