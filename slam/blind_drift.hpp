@@ -9,12 +9,13 @@
 
 namespace glint::slam {
 
-/// How far the pose may have gone astray along critical axes, where nothing but the motion before
-/// tells it: an unknown speed adds up with time, not with its root. Thread-compatible.
+/// How far the pose may have gone astray along axes that surfaces leave open. On critical ones
+/// nothing but the motion before tells it: an unknown speed adds up with time, not with its root.
+/// What keypoints and patches carry drifts a little with the way. Thread-compatible.
 class BlindDrift {
  public:
   /// What one more scan adds to the covariance of T_odom_scan: translation then rotation, right
-  /// perturbation. Nothing without critical axes.
+  /// perturbation. Nothing without weak axes.
   Eigen::Matrix<double, 6, 6> add(const WeakAxes& axes, const Pose& T_odom_scan,
                                   const Twist& velocity, double span_s);
   /// Whether this is to be told: some scans in a row were blind; as many that see end it.

@@ -16,10 +16,10 @@ constexpr double kUnknownVelocity_mps = 2.0;
 constexpr double kUnknownGravity_mps2 = 0.3;
 // In a second the integrated accelerometer loses this much of the velocity, at least: noise, and
 // what vibration and the clocks' disagreement make of it.
-constexpr double kVelocityWalk_mps_rts = 0.02;
+constexpr double kVelocityWalk_mps_rts = 0.01;
 constexpr double kGravityWalk_mps2_rts = 0.005;
 // Of a scan's way and turn, whatever the IMU measured: the instants of its columns.
-constexpr double kWayFloor_m = 3e-4;
+constexpr double kWayFloor_m = 2e-4;
 constexpr double kTurnFloor_rad = 3e-5;
 // What the registration of keypoints alone is good to.
 constexpr double kKeypoints_m = 0.02;

@@ -8,7 +8,7 @@ namespace glint::slam {
 namespace {
 
 // What odometry gains in a second, as a share of a scan's own covariance.
-constexpr double kDriftShare_per_s = 2.0;
+constexpr double kDriftShare_per_s = 1.2;
 constexpr double kLeastShare = 0.04;
 // What a coasted scan adds: metres and radians of unknown acceleration.
 constexpr double kCoastedSigma_m = 0.1;
