@@ -10,6 +10,9 @@ namespace {
 // What odometry gains in a second, as a share of a scan's own covariance.
 constexpr double kDriftShare_per_s = 1.2;
 constexpr double kLeastShare = 0.04;
+// How far a scan's own pose wavers.
+constexpr double kScanSigma_m = 0.002;
+constexpr double kScanSigma_rad = 0.0002;
 // What a coasted scan adds: metres and radians of unknown acceleration.
 constexpr double kCoastedSigma_m = 0.1;
 constexpr double kCoastedSigma_rad = 0.05;
@@ -22,6 +25,12 @@ Matrix6 composed(const Matrix6& base, const Pose& b, const Matrix6& increment) {
   return carried * base * carried.transpose() + increment;
 }
 
+Matrix6 isotropic(double sigma_m, double sigma_rad) {
+  Twist sigma;
+  sigma << Eigen::Vector3d::Constant(sigma_m), Eigen::Vector3d::Constant(sigma_rad);
+  return sigma.cwiseAbs2().asDiagonal();
+}
+
 }  // namespace
 
 void OdometryCovariance::add(const Pose& step, const Matrix6& increment) {
@@ -29,10 +38,10 @@ void OdometryCovariance::add(const Pose& step, const Matrix6& increment) {
   since_keyframe_ = composed(since_keyframe_, step, increment);
 }
 
+void OdometryCovariance::reset() { since_origin_ = isotropic(kScanSigma_m, kScanSigma_rad); }
+
 void OdometryCovariance::coast() {
-  Twist sigma;
-  sigma << Eigen::Vector3d::Constant(kCoastedSigma_m), Eigen::Vector3d::Constant(kCoastedSigma_rad);
-  const Matrix6 increment = sigma.cwiseAbs2().asDiagonal();
+  const Matrix6 increment = isotropic(kCoastedSigma_m, kCoastedSigma_rad);
   since_origin_ += increment;
   since_keyframe_ += increment;
 }

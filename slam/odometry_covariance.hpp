@@ -16,11 +16,14 @@ class OdometryCovariance {
  public:
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
+  OdometryCovariance() { reset(); }
+
   /// One more step, which adds `increment`.
   void add(const Pose& step, const Matrix6& increment);
   /// A scan without any measurement: the motion before went on, with unknown accelerations.
   void coast();
-  void reset() { since_origin_.setZero(); }
+  /// An origin: a scan like any other, which is not better known than they are.
+  void reset();
 
   [[nodiscard]] const Matrix6& since_origin() const { return since_origin_; }
   /// Of the motion since this was called last.
@@ -29,7 +32,7 @@ class OdometryCovariance {
   }
 
  private:
-  Matrix6 since_origin_ = Matrix6::Zero();
+  Matrix6 since_origin_;
   Matrix6 since_keyframe_ = Matrix6::Zero();
 };
 
