@@ -10,9 +10,9 @@ namespace {
 // What odometry gains in a second, as a share of a scan's own covariance.
 constexpr double kDriftShare_per_s = 1.2;
 constexpr double kLeastShare = 0.04;
-// How far a scan's own pose wavers.
-constexpr double kScanSigma_m = 0.002;
-constexpr double kScanSigma_rad = 0.0002;
+// Of an origin: its scan could not be straightened, since nothing was known of its motion.
+constexpr double kOriginSigma_m = 0.008;
+constexpr double kOriginSigma_rad = 0.0005;
 // What a coasted scan adds: metres and radians of unknown acceleration.
 constexpr double kCoastedSigma_m = 0.1;
 constexpr double kCoastedSigma_rad = 0.05;
@@ -38,7 +38,7 @@ void OdometryCovariance::add(const Pose& step, const Matrix6& increment) {
   since_keyframe_ = composed(since_keyframe_, step, increment);
 }
 
-void OdometryCovariance::reset() { since_origin_ = isotropic(kScanSigma_m, kScanSigma_rad); }
+void OdometryCovariance::reset() { since_origin_ = isotropic(kOriginSigma_m, kOriginSigma_rad); }
 
 void OdometryCovariance::coast() {
   const Matrix6 increment = isotropic(kCoastedSigma_m, kCoastedSigma_rad);

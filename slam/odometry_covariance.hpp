@@ -22,7 +22,7 @@ class OdometryCovariance {
   void add(const Pose& step, const Matrix6& increment);
   /// A scan without any measurement: the motion before went on, with unknown accelerations.
   void coast();
-  /// An origin: a scan like any other, which is not better known than they are.
+  /// An origin, which is a scan that was not measured exactly either.
   void reset();
 
   [[nodiscard]] const Matrix6& since_origin() const { return since_origin_; }

@@ -42,7 +42,7 @@ TEST(OdometryCovariance, KeyframesTakeTheirPart) {
   EXPECT_GT(covariance.since_origin()(5, 5), 1e-3);
   covariance.reset();
   EXPECT_EQ(covariance.since_origin(), OdometryCovariance().since_origin());
-  EXPECT_GT(covariance.since_origin()(0, 0), 0.0) << "the first scan wavers, too";
+  EXPECT_GT(covariance.since_origin()(0, 0), 0.0) << "the first scan is not exact";
 }
 
 TEST(OdometryCovariance, DriftGoesWithTimeNotWithScans) {
