@@ -40,7 +40,7 @@ void write_scan_table(const std::filesystem::path& file,
                         e.frame_id, e.segment, slam::to_string(e.state), e.completeness,
                         e.keypoints, e.matches, e.inliers, e.weak_axes.size(), critical);
     for (Eigen::Index i = 0; i < 6; ++i) {
-      for (Eigen::Index j = i; j < 6; ++j) text += fmt::format(",{:.6g}", e.covariance(i, j));
+      for (Eigen::Index j = i; j < 6; ++j) text += fmt::format(",{:.10g}", e.covariance(i, j));
     }
     text += '\n';
   }
