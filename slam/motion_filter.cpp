@@ -10,17 +10,17 @@ namespace glint::slam {
 namespace {
 
 // Of a map's first scan.
-constexpr double kPose_m = 0.001;
-constexpr double kPose_rad = 1e-4;
-constexpr double kUnknownVelocity_mps = 2.0;
-constexpr double kUnknownGravity_mps2 = 0.3;
+constexpr double kFirstPose_m = 0.001;
+constexpr double kFirstPose_rad = 1e-4;
+constexpr double kFirstVelocity_mps = 2.0;
+constexpr double kFirstGravity_mps2 = 0.3;
 // In a second the integrated accelerometer loses this much of the velocity, at least: noise, and
 // what vibration and the clocks' disagreement make of it.
 constexpr double kVelocityWalk_mps_rts = 0.01;
 constexpr double kGravityWalk_mps2_rts = 0.005;
 // Of a scan's way and turn, whatever the IMU measured: the instants of its columns.
 constexpr double kWayFloor_m = 2e-4;
-constexpr double kTurnFloor_rad = 3e-5;
+constexpr double kFilterTurnFloor_rad = 3e-5;
 // What the registration of keypoints alone is good to.
 constexpr double kKeypoints_m = 0.02;
 constexpr double kKeypoints_rad = 0.005;
@@ -43,9 +43,8 @@ MotionFilter::Matrix6 MotionFilter::Prediction::information() const {
 
 void MotionFilter::reset() {
   Eigen::Matrix<double, 12, 1> sigma;
-  sigma << Eigen::Vector3d::Constant(kPose_m), Eigen::Vector3d::Constant(kPose_rad),
-      Eigen::Vector3d::Constant(kUnknownVelocity_mps),
-      Eigen::Vector3d::Constant(kUnknownGravity_mps2);
+  sigma << Eigen::Vector3d::Constant(kFirstPose_m), Eigen::Vector3d::Constant(kFirstPose_rad),
+      Eigen::Vector3d::Constant(kFirstVelocity_mps), Eigen::Vector3d::Constant(kFirstGravity_mps2);
   covariance_ = sigma.cwiseAbs2().asDiagonal();
   unforeseen_ = 1.0;
 }
@@ -77,7 +76,7 @@ MotionFilter::Prediction MotionFilter::predict(const Pose& T_reference_current, 
   variances.segment<3>(0).array() +=
       kWayFloor_m * kWayFloor_m + velocity_variance * span_s * span_s / 3.0;
   variances.segment<3>(3).array() +=
-      kTurnFloor_rad * kTurnFloor_rad + turn_sigma_rad * turn_sigma_rad;
+      kFilterTurnFloor_rad * kFilterTurnFloor_rad + turn_sigma_rad * turn_sigma_rad;
   variances.segment<3>(6).array() += velocity_variance;
   variances.segment<3>(9).array() += kGravityWalk_mps2_rts * kGravityWalk_mps2_rts * span_s;
   return predicted;
