@@ -135,5 +135,26 @@ TEST(BlindDrift, GrowsWithTimeNotWithItsRootAndIsToldAfterThreeScans) {
   EXPECT_FALSE(drift.is_blind());
 }
 
+// An axis that keypoints or patches carry is not blind, but they drift with the way.
+TEST(BlindDrift, WhatIsCarriedDriftsWithTheWayAlongItsAxisAlone) {
+  WeakAxes carried;
+  carried.add({.rotation = false, .axis = kPose.rotation * Eigen::Vector3d::UnitX()});
+  carried.add({.rotation = true, .axis = kPose.rotation * Eigen::Vector3d::UnitX()});
+  const auto gained_in_one_s = [&](double speed_mps) {
+    BlindDrift drift;
+    Eigen::Matrix<double, 6, 6> sum = Eigen::Matrix<double, 6, 6>::Zero();
+    const Twist velocity = (Twist() << speed_mps, 0, 0, 0, 0, 0).finished();
+    for (int scan = 0; scan < 10; ++scan) sum += drift.add(carried, kPose, velocity, 0.1);
+    EXPECT_FALSE(drift.is_blind());
+    return sum;
+  };
+  const auto fast = gained_in_one_s(8.0);
+  EXPECT_NEAR(std::sqrt(fast(0, 0)), 0.012, 1e-6);
+  EXPECT_NEAR(fast(1, 1) + fast(2, 2), 0.0, 1e-12);
+  EXPECT_NEAR(fast.bottomRightCorner(3, 3).norm(), 0.0, 1e-12) << "turns are the gyroscope's";
+  EXPECT_NEAR(fast(0, 0), 16.0 * gained_in_one_s(2.0)(0, 0), 1e-9);
+  EXPECT_EQ(gained_in_one_s(0.0).norm(), 0.0);
+}
+
 }  // namespace
 }  // namespace glint::slam

@@ -104,6 +104,22 @@ TEST_F(MapOptimizerTest, WhatTurningDisplacedStaysOutOfTheMap) {
   EXPECT_EQ(map_size(true, turning), map_size(true, Twist::Zero()));
 }
 
+// What a prior says of axes that surfaces hold counts as much as it is sure.
+TEST_F(MapOptimizerTest, ASurePriorPullsTheScanAndAnUnsureOneDoesNot) {
+  start(config_);
+  for (int i = 0; i < 5; ++i) remember(pose(0.0, 0.0, 0.0));
+  const Pose truth = pose(0.0, 0.0, 0.0);
+  observe(truth);
+  PosePrior prior;
+  prior.T_odom_scan = pose(0.01, 0.0, 0.0);
+  const auto found_m = [&](double sigma_m) {
+    prior.held_information.diagonal().head<3>().setConstant(1.0 / (sigma_m * sigma_m));
+    return optimizer_->optimize({}, {}, truth, prior).T_odom_scan.translation_m.x();
+  };
+  EXPECT_LT(found_m(1.0), 0.002);
+  EXPECT_GT(found_m(1e-5), 0.009);
+}
+
 TEST_F(MapOptimizerTest, LargeRebuildsLeaveTheResultToTheScansAlone) {
   const auto walk = [&] {
     start(config_);
@@ -133,8 +149,9 @@ class MapOptimizerInTunnel : public MapOptimizerTest {
   }
   static Pose along(double x_m) { return {Eigen::Quaterniond::Identity(), {x_m, 0.4, -0.5}}; }
   // Of a scan at 0.2 m, for one that the motion so far leads to 0, as sure as that.
-  MapOptimization optimize_at_20_cm(double sigma_m) {
+  MapOptimization optimize_at_20_cm(double sigma_m, double held_sigma_m = 1.0) {
     PosePrior prior;
+    prior.held_information.diagonal().head<3>().setConstant(1.0 / (held_sigma_m * held_sigma_m));
     prior.T_odom_scan = along(0.0);
     prior.information.diagonal().head<3>().setConstant(1.0 / (sigma_m * sigma_m));
     prior.information.diagonal().tail<3>().setConstant(1e6);
@@ -158,6 +175,13 @@ TEST_F(MapOptimizerInTunnel, PatchesThatAgreeWithTheMotionTellTheWay) {
   ASSERT_TRUE(result.ok);
   EXPECT_FALSE(result.weak_axes.empty());
   EXPECT_FALSE(result.weak_axes.any_critical());
+  EXPECT_NEAR(result.T_odom_scan.translation_m.x(), 0.2, 0.02);
+}
+
+// However sure it would be of an axis that surfaces held.
+TEST_F(MapOptimizerInTunnel, WhereSurfacesHoldNothingTheHeldPriorHasNoSay) {
+  const MapOptimization result = optimize_at_20_cm(0.2, 1e-4);
+  ASSERT_TRUE(result.ok);
   EXPECT_NEAR(result.T_odom_scan.translation_m.x(), 0.2, 0.02);
 }
 

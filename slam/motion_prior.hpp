@@ -39,8 +39,9 @@ struct FoundMotion {
 };
 
 /// Foretells the next scan's pose: as the IMU measured the motion where there is one, else at a
-/// constant body velocity. How far that is to be trusted is learned from how well it foretold; so
-/// are velocity and gravity (with the accelerometer's bias in it). Thread-compatible.
+/// constant body velocity. With an accelerometer a MotionFilter keeps velocity and gravity (with
+/// the accelerometer's bias in it) and tells how sure the pose is; without one, and along open
+/// axes, how well it foretold so far tells that. Thread-compatible.
 class MotionPrior {
  public:
   /// With the accelerometer too, or turns alone.

@@ -113,6 +113,9 @@ TEST_F(MotionPriorTest, AnAccelerometerForetellsChangesOfVelocity) {
   EXPECT_TRUE(predicted_.by_accelerometer);
   EXPECT_LT(error_m, 0.002);
   EXPECT_NEAR(state_.velocity.x(), 1.2, 0.01);
+  const double held_sigma_m = 1.0 / std::sqrt(predicted_.held_information()(2, 2));
+  EXPECT_GT(held_sigma_m, error_m / 2.0);
+  EXPECT_LT(held_sigma_m, 0.01) << "surer than what it is trusted along open axes";
 }
 
 TEST_F(MotionPriorTest, GravityThatWasTakenWronglyIsMended) {
@@ -128,6 +131,7 @@ TEST_F(MotionPriorTest, WithoutAccelerometerTurnsAloneAreTaken) {
   EXPECT_GT(walk(prior, 60, true), 0.01);
   EXPECT_TRUE(predicted_.by_gyro);
   EXPECT_FALSE(predicted_.by_accelerometer);
+  EXPECT_TRUE(predicted_.held_information().isZero(0.0));
 }
 
 }  // namespace
