@@ -52,7 +52,7 @@ std::unique_ptr<SessionStore> make_store(const std::filesystem::path& file,
 }  // namespace
 
 Backend::Backend(const SlamConfig& config, const std::filesystem::path& session_file, Clock clock,
-                 LoopSource loops, const std::filesystem::path& earlier)
+                 LoopSource loops, const std::filesystem::path& earlier, MapUse use)
     : config_(config),
       session_file_(session_file),
       clock_(clock),
@@ -65,7 +65,7 @@ Backend::Backend(const SlamConfig& config, const std::filesystem::path& session_
     store_->set_meta("vocabulary_hash",
                      fmt::format("{:016x}", open_vocabulary(config.vocabulary)->hash()));
   }
-  if (!earlier.empty()) load(earlier);
+  if (!earlier.empty()) load(earlier, use);
 }
 
 Backend::~Backend() = default;
@@ -80,7 +80,10 @@ void Backend::process(const Keyframe& keyframe) {
   const StageTimer timer(clock_, times_, Stage::kBackend);
   loop_reports_.clear();
   stamp_ = keyframe.estimate.stamp;
-  if (search_) {
+  if (searches_new_segments_ && begins_segment(keyframe)) search_anew();
+  if (localizer_) {
+    localizer_->process(keyframe, correction_);
+  } else if (search_) {
     search_place(renumbered(keyframe));
   } else if (!keyframe.probe) {
     take(renumbered(keyframe));
@@ -108,6 +111,7 @@ void Backend::finish() {
   times_ = {};
   const StageTimer timer(clock_, times_, Stage::kBackend);
   loop_reports_.clear();
+  go_on_unfound();
   if (loops_waiting_) {
     settle();
     store_changes();
@@ -243,13 +247,13 @@ void Backend::correct(const std::vector<Pose>& before) {
     const GraphNode& node = graph_.nodes()[i];
     const Pose& T_map_sensor = graph_.poses()[i];
     if (node.segment >= first_segment_) {
-      anchors->push_back({node.segment - first_segment_, node.sequence,
+      anchors->push_back({odometry_segment(node.segment), node.sequence,
                           T_map_sensor * node.T_odom_sensor.inverse()});
     }
     T_new_old.push_back(T_map_sensor * before[i].inverse());
     changes_.poses.emplace_back(node.id, T_map_sensor);
   }
-  correction_ = {anchors->back().T_map_odom, correction_.epoch + 1, true, 1.0, anchors};
+  correction_ = {anchors->back().T_map_odom, correction_.epoch + 1, true, 1.0, anchors, {}};
   map_->move(T_new_old);
 }
 

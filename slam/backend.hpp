@@ -18,6 +18,7 @@
 #include "slam/loops/relocalizer.hpp"
 #include "slam/map.hpp"
 #include "slam/map_correction.hpp"
+#include "slam/map_localizer.hpp"
 #include "slam/moving_points.hpp"
 #include "slam/pose_graph.hpp"
 #include "slam/stage_times.hpp"
@@ -25,6 +26,15 @@
 #include "slam/store/session_store.hpp"
 
 namespace glint::slam {
+
+/// What is done with the map of an earlier session.
+enum class MapUse {
+  kExtend,    ///< It goes on to grow once the sensor is found in it.
+  kLocalize,  ///< It is only read: the sensor's place in it is told, and no session is kept.
+};
+
+/// In which map the sensor is being looked for.
+enum class MapSearch { kNone, kEarlierMap, kOwnMap, kMapOnlyRead };
 
 /// Keyframes in; pose graph, map and session out. Thread-compatible; owned by the backend thread.
 class Backend {
@@ -37,9 +47,10 @@ class Backend {
   /// tells, and what follows is in the frame of that map. `session_file` then begins with that
   /// session, or is itself gone on with if it is the same; until then neither is written.
   /// @throws InputError where it cannot be read.
+  /// `use`: with kLocalize neither the map nor any file is ever changed, see MapLocalizer.
   explicit Backend(const SlamConfig& config, const std::filesystem::path& session_file = {},
                    Clock clock = {}, LoopSource loops = {},
-                   const std::filesystem::path& earlier = {});
+                   const std::filesystem::path& earlier = {}, MapUse use = MapUse::kExtend);
   ~Backend();
   Backend(const Backend&) = delete;
   Backend& operator=(const Backend&) = delete;
@@ -50,6 +61,18 @@ class Backend {
   [[nodiscard]] std::filesystem::path session_file() const {
     return store_ ? session_file_ : std::filesystem::path();
   }
+  /// The sensor's place is forgotten and looked for anew, near `guess` first; until it is found
+  /// keyframes are held back, and make a segment of their own then. False when there is no map to
+  /// look in, or no session on the disk that could tell of it: nothing happens then.
+  bool search_anew(const std::optional<PlaceGuess>& guess = {});
+  /// From here on that is done by itself when tracking restarts in a new segment. (A map that is
+  /// only read always does.)
+  void search_new_segments() { searches_new_segments_ = true; }
+  [[nodiscard]] MapSearch search() const;
+  /// Whether the last call gave up the guess that the search began with.
+  [[nodiscard]] bool guess_dropped() const;
+  /// Ends a search in the own map: what was held back goes where odometry has it.
+  void go_on_unfound();
   /// The keyframes held back so far, in their own numbers: for a back end without that map, when
   /// the sensor is nowhere in it.
   [[nodiscard]] std::vector<Keyframe> give_up_search();
@@ -87,13 +110,17 @@ class Backend {
  private:
   /// For the place of the sensor in a map that was there before.
   struct PlaceSearch {
-    std::filesystem::path session;
+    std::filesystem::path session;  ///< Empty: it is that of the map there is.
     Relocalizer relocalizer;
     std::vector<Keyframe> waiting;  ///< That are to be built from once it is found.
     std::optional<SensorTime> begin;
   };
 
-  void load(const std::filesystem::path& session);
+  void load(const std::filesystem::path& session, MapUse use);
+  [[nodiscard]] std::optional<Relocalizer> knowing_own_map();
+  [[nodiscard]] bool begins_segment(const Keyframe& keyframe) const;
+  void set_apart(std::vector<Keyframe>& waiting);
+  [[nodiscard]] std::uint32_t odometry_segment(std::uint32_t map_segment) const;
   [[nodiscard]] Keyframe renumbered(const Keyframe& keyframe) const;
   void restore(const SessionReader& session, Relocalizer& relocalizer);
   void search_place(const Keyframe& keyframe);
@@ -123,9 +150,12 @@ class Backend {
   std::string no_session_because_;            ///< Why there is none after the place was found.
   std::shared_ptr<const SensorInfo> sensor_;  ///< For a session that is yet to be made.
   std::optional<PlaceSearch> search_;         ///< While the sensor's place is not known.
+  std::optional<MapLocalizer> localizer_;     ///< Of a map that is only read.
   /// What makes the numbers of keyframes and segments those of the map.
   std::uint64_t first_keyframe_ = 0;
   std::uint32_t first_segment_ = 0;
+  std::vector<std::uint32_t> set_apart_;  ///< Segments that are not new ones of odometry.
+  bool searches_new_segments_ = false;
   MapCorrection correction_;
   std::shared_ptr<const MapSnapshot> snapshot_;
   std::vector<LoopReport> loop_reports_;

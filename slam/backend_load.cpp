@@ -3,6 +3,7 @@
 //
 // How a back end goes on with the map of an earlier session.
 #include <algorithm>
+#include <functional>
 #include <utility>
 
 #include "driver/core/error.hpp"
@@ -53,11 +54,15 @@ void Backend::begin_at_epoch(std::uint32_t epoch) {
   snapshot_ = std::move(snapshot);
 }
 
-void Backend::load(const std::filesystem::path& session) {
+void Backend::load(const std::filesystem::path& session, MapUse use) {
   const SessionReader reader(session);
-  PlaceSearch search{session, Relocalizer(open_vocabulary(config_.vocabulary)), {}, {}};
-  restore(reader, search.relocalizer);
-  search_.emplace(std::move(search));
+  Relocalizer relocalizer(open_vocabulary(config_.vocabulary));
+  restore(reader, relocalizer);
+  if (use == MapUse::kLocalize) {
+    localizer_.emplace(std::move(relocalizer));
+  } else {
+    search_.emplace(PlaceSearch{session, std::move(relocalizer), {}, {}});
+  }
   correction_.placed = false;
   correction_.confidence = 0.0;
   ++correction_.epoch;
@@ -83,7 +88,7 @@ void Backend::restore(const SessionReader& session, Relocalizer& relocalizer) {
 Keyframe Backend::renumbered(const Keyframe& keyframe) const {
   Keyframe out = keyframe;
   out.id += first_keyframe_;
-  out.estimate.segment += first_segment_;
+  out.estimate.segment += first_segment_ + static_cast<std::uint32_t>(set_apart_.size());
   return out;
 }
 
@@ -94,7 +99,15 @@ void Backend::search_place(const Keyframe& keyframe) {
   if (waiting.size() > kMostWaiting) waiting.erase(waiting.begin());
   const auto found = search_->relocalizer.locate(keyframe);
   correction_.confidence = search_->relocalizer.confidence();
-  if (!found || search_->waiting.empty()) return;
+  // What is of other segments has no way to this place that odometry knows.
+  const auto linked = [&](const Keyframe& k) {
+    return k.estimate.segment == keyframe.estimate.segment;
+  };
+  if (!found || std::ranges::none_of(search_->waiting, linked)) return;
+  if (search_->session.empty()) {
+    std::erase_if(waiting, std::not_fn(linked));
+    set_apart(waiting);
+  }
   settle_down(*found, keyframe.estimate.T_odom_sensor);
 }
 
@@ -102,7 +115,7 @@ void Backend::search_place(const Keyframe& keyframe) {
 void Backend::settle_down(const Relocation& found, const Pose& T_odom_sensor) {
   const PlaceSearch search = std::move(*search_);
   search_.reset();
-  continue_session(search.session);
+  if (!search.session.empty()) continue_session(search.session);
   const Pose T_map_odom = found.T_map_sensor * T_odom_sensor.inverse();
   for (const Keyframe& keyframe : search.waiting) {
     const Pose T_map_sensor = T_map_odom * keyframe.estimate.T_odom_sensor;
@@ -152,6 +165,7 @@ std::vector<Keyframe> Backend::give_up_search() {
 }
 
 double Backend::searching_s() const {
+  if (localizer_) return localizer_->searching_s();
   if (!search_ || !search_->begin) return 0.0;
   return static_cast<double>(stamp_ - *search_->begin) * kSecondsPerNs;
 }

@@ -6,6 +6,26 @@
 #include <utility>
 
 namespace glint::slam {
+namespace {
+
+// What odometry errs by on the way from a keyframe to the scans before the next one.
+constexpr double kWayShare = 0.01;
+constexpr double kTurn_rad = 0.002;
+
+}  // namespace
+
+Eigen::Matrix<double, 6, 6> PlaceCertainty::covariance_at(const Pose& T_odom_scan) const {
+  const Pose T_scan_keyframe = T_odom_scan.inverse() * T_odom_sensor;
+  const Eigen::Matrix<double, 6, 6> carried = adjoint(T_scan_keyframe);
+  const double way_m = T_scan_keyframe.translation_m.norm();
+  Twist gained = Twist::Zero();
+  if (way_m > 0.0) {
+    gained.head<3>().setConstant(kWayShare * kWayShare * way_m * way_m);
+    gained.tail<3>().setConstant(kTurn_rad * kTurn_rad);
+  }
+  return carried * covariance * carried.transpose() +
+         Eigen::Matrix<double, 6, 6>(gained.asDiagonal());
+}
 
 Pose MapCorrection::map_pose(std::uint32_t segment, double sequence,
                              const Pose& T_odom_sensor) const {

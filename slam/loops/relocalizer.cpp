@@ -36,6 +36,13 @@ constexpr double kDisagree_m = 0.3;
 constexpr double kDisagreeShare = 0.03;
 constexpr double kDisagree_rad = 0.07;
 
+// A guess holds for what is as near as this many of its deviations and as a keyframe may be, and
+// turned by no more; it is dropped after so many scans.
+constexpr double kGuessSigmas = 3.0;
+constexpr double kGuessReach_m = 3.0;
+constexpr double kGuessTurn_rad = 0.8;
+constexpr int kGuessScans = 12;
+
 std::size_t numbers_apart(std::size_t a, std::size_t b) { return a > b ? a - b : b - a; }
 
 }  // namespace
@@ -49,17 +56,24 @@ void Relocalizer::remember(const Keyframe& keyframe, const Pose& T_map_sensor) {
   index_.add(vocabulary_->bag_of(place.descriptors));
 }
 
+void Relocalizer::begin_near(const PlaceGuess& guess) {
+  begin_anew();
+  expected_ = Expectation{guess, {}, 0};
+}
+
 void Relocalizer::begin_anew() {
+  expected_.reset();
   scans_.clear();
   candidates_.clear();
   confidence_ = 0.0;
 }
 
 std::optional<Relocation> Relocalizer::locate(const Keyframe& keyframe) {
-  if (keyframe.estimate.segment != segment_) begin_anew();
+  if (keyframe.estimate.segment != segment_ && !scans_.empty()) begin_anew();
   segment_ = keyframe.estimate.segment;
   candidates_.clear();
   const Place current = make_place(keyframe);
+  note_guess(current.T_odom_sensor);
   Scan scan{current.T_odom_sensor, 0.0, {}};
   if (!scans_.empty()) {
     const Scan& last = scans_.back();
@@ -68,7 +82,8 @@ std::optional<Relocation> Relocalizer::locate(const Keyframe& keyframe) {
   }
   std::erase_if(scans_, [&](const Scan& s) { return scan.path_m - s.path_m > kScanMemory_m; });
   if (scans_.size() == kScansKept) scans_.pop_front();
-  for (const std::size_t entry : likeliest(vocabulary_->bag_of(current.descriptors))) {
+  for (const std::size_t entry :
+       likeliest(vocabulary_->bag_of(current.descriptors), current.T_odom_sensor)) {
     judge(entry, current, candidates_.emplace_back(), scan);
     if (scan.fits.size() == kMostFits) break;
   }
@@ -76,17 +91,67 @@ std::optional<Relocation> Relocalizer::locate(const Keyframe& keyframe) {
   return decide();
 }
 
-// The places most like it, none next to a likelier one.
-std::vector<std::size_t> Relocalizer::likeliest(const BagOfWords& bag) {
-  std::vector<ScoredPlace> found = index_.query(bag, places_.size(), kLeastLikeness);
-  std::ranges::stable_sort(found, std::ranges::greater{}, &ScoredPlace::similarity);
+// The guess is for the first scan after it; after too many it has proved wrong.
+void Relocalizer::note_guess(const Pose& T_odom_sensor) {
+  guess_dropped_ = expected_ && expected_->scans == kGuessScans;
+  if (guess_dropped_) expected_.reset();
+  if (!expected_) return;
+  ++expected_->scans;
+  if (!expected_->T_odom_first) expected_->T_odom_first = T_odom_sensor;
+}
+
+// Whether it is where the guess has the scan, as odometry carries it.
+bool Relocalizer::is_expected(const Pose& T_map_sensor, const Pose& T_odom_sensor) const {
+  if (!expected_) return true;
+  const PlaceGuess& guess = expected_->guess;
+  const Pose there = guess.T_map_sensor * (expected_->T_odom_first->inverse() * T_odom_sensor);
+  const Pose off = there.inverse() * T_map_sensor;
+  // Where the heading is not known, nor is the direction that odometry went.
+  const double way_m =
+      guess.knows_heading ? 0.0 : (there.translation_m - guess.T_map_sensor.translation_m).norm();
+  if (off.translation_m.norm() > kGuessReach_m + kGuessSigmas * guess.sigma_m + 2.0 * way_m) {
+    return false;
+  }
+  return !guess.knows_heading || so3_log(off.rotation).norm() < kGuessTurn_rad;
+}
+
+// Of `found` those near the guess, then the others near it, which look like something else.
+std::vector<std::size_t> Relocalizer::near_guess(std::span<const ScoredPlace> found,
+                                                 const Pose& T_odom_sensor) const {
+  const auto is_near = [&](std::size_t entry) {
+    Pose here = places_[entry].T_odom_sensor;
+    // A keyframe shows all around: it may have looked another way.
+    here.rotation = expected_->guess.T_map_sensor.rotation *
+                    (expected_->T_odom_first->inverse() * T_odom_sensor).rotation;
+    return is_expected(here, T_odom_sensor);
+  };
   std::vector<std::size_t> entries;
   for (const ScoredPlace& place : found) {
+    if (is_near(place.entry)) entries.push_back(place.entry);
+  }
+  for (std::size_t entry = 0; entry < places_.size(); ++entry) {
+    if (is_near(entry)) entries.push_back(entry);
+  }
+  return entries;
+}
+
+// The places most like it, none next to a likelier one.
+std::vector<std::size_t> Relocalizer::likeliest(const BagOfWords& bag, const Pose& T_odom_sensor) {
+  std::vector<ScoredPlace> found = index_.query(bag, places_.size(), kLeastLikeness);
+  std::ranges::stable_sort(found, std::ranges::greater{}, &ScoredPlace::similarity);
+  std::vector<std::size_t> order;
+  if (expected_) {
+    order = near_guess(found, T_odom_sensor);
+  } else {
+    for (const ScoredPlace& place : found) order.push_back(place.entry);
+  }
+  std::vector<std::size_t> entries;
+  for (const std::size_t entry : order) {
     const auto same = [&](std::size_t better) {
-      return numbers_apart(better, place.entry) <= kSameSight;
+      return numbers_apart(better, entry) <= kSameSight;
     };
     if (std::ranges::any_of(entries, same)) continue;
-    entries.push_back(place.entry);
+    entries.push_back(entry);
     if (entries.size() == kMostAsked) break;
   }
   return entries;
@@ -109,6 +174,10 @@ void Relocalizer::judge(std::size_t entry, const Place& current, LoopCandidate& 
     return;
   }
   fit.T_map_sensor = older.T_odom_sensor * fit.edge.T_from_to;
+  if (!is_expected(fit.T_map_sensor, current.T_odom_sensor)) {
+    candidate.reason = "it is not where the sensor is thought to be";
+    return;
+  }
   const std::vector<Place> near = nearest(fit.T_map_sensor);
   fit.there = compare_places(near.front(), near, current,
                              near.front().T_odom_sensor.inverse() * fit.T_map_sensor);

@@ -6,6 +6,7 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -23,6 +24,13 @@ namespace glint::slam {
 struct PlaceSighting {
   LoopEdge edge;       ///< From the keyframe to the scan.
   Pose T_odom_sensor;  ///< Of the scan.
+};
+
+/// About where in a map a sensor is: a help for the search, which it may be wrong for.
+struct PlaceGuess {
+  Pose T_map_sensor;
+  double sigma_m = 3.0;
+  bool knows_heading = true;  ///< Else only the position of T_map_sensor says something.
 };
 
 /// Where a sensor was found in a map.
@@ -43,6 +51,8 @@ class Relocalizer {
   /// A keyframe of the map, in the order of its session, and where the map has it.
   void remember(const Keyframe& keyframe, const Pose& T_map_sensor);
   [[nodiscard]] std::size_t place_count() const { return places_.size(); }
+  /// Theirs, in that order; their odometry is the map.
+  [[nodiscard]] const std::vector<Place>& places() const { return places_; }
 
   /// Looks for the place of a scan. What odometry says of its motion since the scans before it
   /// counts; those of other segments are forgotten.
@@ -51,8 +61,13 @@ class Relocalizer {
   [[nodiscard]] const std::vector<LoopCandidate>& candidates() const { return candidates_; }
   /// How near the last locate() came to a place that it believes in, 0 to 1.
   [[nodiscard]] double confidence() const { return confidence_; }
-  /// Forgets the scans, not the map.
+  /// Forgets the scans and the guess, not the map.
   void begin_anew();
+  /// Begins anew, and first looks only about where the next scan is thought to be taken. Where some
+  /// scans do not bear that out, the guess is dropped and all of the map is searched.
+  void begin_near(const PlaceGuess& guess);
+  /// Whether the last locate() dropped the guess.
+  [[nodiscard]] bool guess_dropped() const { return guess_dropped_; }
 
  private:
   /// A place where a scan fits.
@@ -75,7 +90,19 @@ class Relocalizer {
     int contradictions_here = 0;
   };
 
-  [[nodiscard]] std::vector<std::size_t> likeliest(const BagOfWords& bag);
+  /// A guess, and what has become of it.
+  struct Expectation {
+    PlaceGuess guess;
+    std::optional<Pose> T_odom_first;  ///< Of the scan that it is for.
+    int scans = 0;                     ///< That were looked for there.
+  };
+
+  void note_guess(const Pose& T_odom_sensor);
+  [[nodiscard]] bool is_expected(const Pose& T_map_sensor, const Pose& T_odom_sensor) const;
+  [[nodiscard]] std::vector<std::size_t> near_guess(std::span<const ScoredPlace> found,
+                                                    const Pose& T_odom_sensor) const;
+  [[nodiscard]] std::vector<std::size_t> likeliest(const BagOfWords& bag,
+                                                   const Pose& T_odom_sensor);
   void judge(std::size_t entry, const Place& current, LoopCandidate& candidate, Scan& scan);
   [[nodiscard]] std::vector<Place> nearest(const Pose& T_map_sensor) const;
   [[nodiscard]] bool agree(const Scan& a, const Fit& fit_a, const Scan& b, const Fit& fit_b) const;
@@ -91,6 +118,8 @@ class Relocalizer {
   std::vector<Place> places_;  ///< Their odometry is the map.
   std::deque<Scan> scans_;     ///< That were asked about; the current one is the last.
   std::uint32_t segment_ = 0;  ///< Of these.
+  std::optional<Expectation> expected_;
+  bool guess_dropped_ = false;
   std::vector<LoopCandidate> candidates_;
   double confidence_ = 0.0;
 };

@@ -136,6 +136,52 @@ TEST(Relocalizer, BetweenIdenticalGalleriesItSaysNothing) {
   EXPECT_FALSE(robot.walk(20.0, 1, 40));
 }
 
+TEST(Relocalizer, AGuessTellsIdenticalGalleriesApart) {
+  for (const int at : {0, 1}) {
+    Awakening robot(2, 0);
+    robot.map_gallery(0);
+    robot.map_gallery(1);
+    PlaceGuess guess;
+    guess.T_map_sensor = gallery_pose(23.0, 0.3, M_PI + 0.2, at);
+    robot.relocalizer.begin_near(guess);
+    const auto error = robot.walk(24.0, at);
+    ASSERT_TRUE(error) << at;
+    EXPECT_LT(*error, 0.08);
+    EXPECT_FALSE(robot.relocalizer.guess_dropped());
+  }
+}
+
+TEST(Relocalizer, AGuessThatIsWrongIsDroppedAndTheSensorFoundWhereItIs) {
+  Awakening robot;
+  robot.map_gallery(0);
+  PlaceGuess guess;
+  guess.T_map_sensor = gallery_pose(5.0, 0.0, 0.0);
+  guess.knows_heading = false;
+  guess.sigma_m = 0.5;
+  robot.relocalizer.begin_near(guess);
+  const Pose truth = gallery_pose(20.0, -0.2, 2.0);
+  int dropped = 0;
+  for (int i = 0; i < 12; ++i) EXPECT_FALSE(robot.see(truth)) << i;
+  EXPECT_FALSE(robot.relocalizer.guess_dropped());
+  std::optional<Relocation> found;
+  for (int i = 0; i < 4 && !found; ++i) {
+    found = robot.see(truth);
+    dropped += robot.relocalizer.guess_dropped() ? 1 : 0;
+  }
+  ASSERT_TRUE(found);
+  EXPECT_EQ(dropped, 1) << "it is told once";
+  EXPECT_LT((found->T_map_sensor.translation_m - truth.translation_m).norm(), 0.08);
+}
+
+TEST(Relocalizer, AGuessOfTheWrongHeadingIsNoPlace) {
+  Awakening robot;
+  robot.map_gallery(0);
+  PlaceGuess guess;
+  guess.T_map_sensor = gallery_pose(20.0, -0.2, 2.0 - M_PI);
+  robot.relocalizer.begin_near(guess);
+  for (int i = 0; i < 12; ++i) EXPECT_FALSE(robot.see(gallery_pose(20.0, -0.2, 2.0))) << i;
+}
+
 TEST(Relocalizer, AnEmptyMapHoldsNothing) {
   Awakening robot;
   EXPECT_FALSE(robot.walk(15.0, 0));
