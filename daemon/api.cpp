@@ -11,6 +11,7 @@
 
 #include "daemon/map_saving.hpp"
 #include "daemon/protocol_map.hpp"
+#include "daemon/protocol_place.hpp"
 #include "daemon/sensor_link.hpp"
 #include "daemon/session_files.hpp"
 #include "daemon/version.hpp"
@@ -25,7 +26,7 @@ constexpr std::array kFeatures = {"get_pose",         "get_pose.at_ns", "get_pos
                                   "subscribe.events", "unsubscribe",    "pause",
                                   "resume",           "reset_odometry", "save_map",
                                   "list_maps",        "delete_map",     "load_map",
-                                  "clear_map"};
+                                  "clear_map",        "relocalize",     "set_initial_pose"};
 
 /// Tells one run of the daemon from the next.
 std::string random_instance() {
@@ -86,16 +87,19 @@ Api::Method Api::find_method(std::string_view name) {
     std::string_view name;
     Method method;
   };
-  static constexpr std::array<Entry, 10> kMethods = {{{"get_pose", &Api::call_get_pose},
-                                                      {"get_status", &Api::call_get_status},
-                                                      {"get_trajectory", &Api::call_get_trajectory},
-                                                      {"get_config", &Api::call_get_config},
-                                                      {"pause", &Api::call_pause},
-                                                      {"resume", &Api::call_resume},
-                                                      {"reset_odometry", &Api::call_reset_odometry},
-                                                      {"save_map", &Api::call_save_map},
-                                                      {"load_map", &Api::call_load_map},
-                                                      {"clear_map", &Api::call_clear_map}}};
+  static constexpr std::array<Entry, 12> kMethods = {
+      {{"get_pose", &Api::call_get_pose},
+       {"get_status", &Api::call_get_status},
+       {"get_trajectory", &Api::call_get_trajectory},
+       {"get_config", &Api::call_get_config},
+       {"pause", &Api::call_pause},
+       {"resume", &Api::call_resume},
+       {"reset_odometry", &Api::call_reset_odometry},
+       {"save_map", &Api::call_save_map},
+       {"load_map", &Api::call_load_map},
+       {"clear_map", &Api::call_clear_map},
+       {"relocalize", &Api::call_relocalize},
+       {"set_initial_pose", &Api::call_set_initial_pose}}};
   const auto* found = std::ranges::find(kMethods, name, &Entry::name);
   return found == kMethods.end() ? nullptr : found->method;
 }
@@ -250,13 +254,38 @@ Json Api::change_map(const std::string& kind, SessionPlan plan) {
 
 Json Api::call_load_map(const Json& params) {
   const std::string name = map_name_param(params);
-  choice_param(params, "mode", "extend");
+  const bool extends = choice_param(params, "mode", "extend|localize") == "extend";
   expect_a_place_for_maps();
   if (!maps_.contains(name)) {
     throw RpcError(kNoSuchMap, fmt::format("there is no map '{}'; list_maps names all", name),
                    "name");
   }
-  return change_map("load_map", plan_extension(config_, maps_.file_of(name)));
+  const std::filesystem::path file = maps_.file_of(name);
+  return change_map("load_map",
+                    extends ? plan_extension(config_, file) : plan_localization(config_, file));
+}
+
+Json Api::call_relocalize(const Json&) { return search_place({}); }
+
+Json Api::call_set_initial_pose(const Json& params) {
+  return search_place({parse_place_guess(params, config_.mount.T_base_sensor)});
+}
+
+Json Api::search_place(PlaceSearchRequest request) {
+  const auto map = runtime_.status().map;
+  if (map->map->keyframe_count == 0) {
+    throw RpcError(kNotTracking, "there is no map yet in which the sensor could be looked for");
+  }
+  if (!map->only_read && map->session_file.empty() && runtime_.snapshot()->correction.placed) {
+    throw RpcError(kNotConfigured,
+                   "no session is kept, without which the map cannot be searched: set "
+                   "state.directory and start the daemon anew",
+                   "state.directory");
+  }
+  runtime_.search_place(std::move(request));
+  Json out = head();
+  out["accepted"] = true;
+  return out;
 }
 
 Json Api::call_clear_map(const Json&) {
@@ -276,6 +305,9 @@ Json Api::call_save_map(const Json& params) {
   expect_a_place_for_maps();
   if (map->map->keyframe_count == 0) {
     throw RpcError(kNotTracking, "there is no keyframe yet, so there is no map to save");
+  }
+  if (map->only_read) {
+    throw RpcError(kNotTracking, "the map is only read, so there is nothing new to save");
   }
   if (map->session_file.empty()) {
     throw RpcError(kNotTracking,

@@ -74,6 +74,9 @@ class Api {
   Json call_save_map(const Json& params);
   Json call_load_map(const Json& params);
   Json call_clear_map(const Json& params);
+  Json call_relocalize(const Json& params);
+  Json call_set_initial_pose(const Json& params);
+  Json search_place(PlaceSearchRequest request);
   Json change_map(const std::string& kind, SessionPlan plan);
   [[noreturn]] void refuse_job() const;
   WorkerStep call_get_map(const Json& params);

@@ -15,10 +15,12 @@ namespace {
 
 constexpr std::chrono::milliseconds kKeyframeWait{100};
 
-// What has happened to the map.
-const char* action_between(const slam::MapCorrection& before, const slam::MapCorrection& now) {
-  if (!now.placed) return "loaded";
-  return before.placed ? "corrected" : "located";
+// What has happened to the map, or to the sensor in one that is only read.
+const char* action_between(const slam::MapCorrection& before, const slam::MapCorrection& now,
+                           slam::MapUse use) {
+  if (!now.placed) return "searching";
+  const bool moved = before.placed && use == slam::MapUse::kExtend;
+  return moved ? "corrected" : "located";
 }
 
 }  // namespace
@@ -33,13 +35,17 @@ BackendThread::BackendThread(const Config& config, SessionPlan plan,
       heartbeat_(heartbeat),
       events_(events),
       backend_(make_backend()) {
-  tell({});
+  tell({}, backend_->correction().placed ? nullptr : "loaded");
 }
 
 std::unique_ptr<slam::Backend> BackendThread::make_backend() const {
-  return std::make_unique<slam::Backend>(config_, plan_.file, stage_clock(),
-                                         make_loops_ ? make_loops_() : slam::LoopSource{},
-                                         plan_.earlier);
+  const bool grows = plan_.use == slam::MapUse::kExtend;
+  auto backend = std::make_unique<slam::Backend>(
+      config_, plan_.file, stage_clock(), grows && make_loops_ ? make_loops_() : slam::LoopSource{},
+      plan_.earlier, plan_.use);
+  backend->call_meanwhile([this] { heartbeat_.beat(); });
+  if (config_.loops) backend->search_new_segments();
+  return backend;
 }
 
 void BackendThread::run() {
@@ -54,6 +60,7 @@ void BackendThread::run() {
     keep_session();
     crossings_.session_commit.serve([this] { return commit_session(); });
     if (const auto change = crossings_.map_change.take()) change_map(*change);
+    if (const auto request = crossings_.place_search.take()) search_anew(*request);
   }
   const slam::MapCorrection before = backend_->correction();
   backend_->finish();
@@ -80,7 +87,36 @@ void BackendThread::process(const slam::Keyframe& keyframe) {
   duration_.add(wall_ns(slam::Stage::kBackend));
   pgo_duration_.add(wall_ns(slam::Stage::kPgo));
   tell(before);
-  if (backend_->searching_s() > plan_.search_s) begin_another_map();
+  if (backend_->guess_dropped()) post_map_event("guess_dropped");
+  if (backend_->search() == slam::MapSearch::kNone) told_not_found_ = false;
+  if (backend_->searching_s() > plan_.search_s) take_end_of_search();
+}
+
+void BackendThread::search_anew(const PlaceSearchRequest& request) {
+  const slam::MapCorrection before = backend_->correction();
+  told_not_found_ = false;
+  if (!backend_->search_anew(request.guess)) {
+    return spdlog::warn("the sensor's place is not looked for: no session tells of the map");
+  }
+  tell(before);
+}
+
+// The sensor was not found for so long as it is looked for.
+void BackendThread::take_end_of_search() {
+  switch (backend_->search()) {
+    case slam::MapSearch::kEarlierMap:
+      return begin_another_map();
+    case slam::MapSearch::kOwnMap: {
+      const slam::MapCorrection before = backend_->correction();
+      backend_->go_on_unfound();
+      return tell(before, "not_found");
+    }
+    default:
+      if (std::exchange(told_not_found_, true)) return;
+      spdlog::warn("the sensor was not found in the map for {:.0f} s; the search goes on",
+                   plan_.search_s);
+      post_map_event("not_found");
+  }
 }
 
 // The map there is now stays until the other one is there.
@@ -96,6 +132,7 @@ void BackendThread::change_map(const MapChange& change) {
     return change.job->fail(error.what());
   }
   backend_->begin_at_epoch(before.epoch + 1);
+  told_not_found_ = false;
   if (sensor_) backend_->use_sensor(*sensor_);
   tell(before, change.plan.earlier.empty() ? "cleared" : "loaded");
   change.job->done(Json{{"keyframes", backend_->snapshot()->keyframe_count},
@@ -143,10 +180,12 @@ bool BackendThread::commit_session() {
 // Odometry has ended, and what it was told last it may not have seen.
 void BackendThread::correct_last_snapshot() {
   const std::shared_ptr<const Snapshot> last = crossings_.snapshot.load();
-  if (last->correction.epoch == backend_->correction().epoch) return;
+  if (last->correction.same_as(backend_->correction())) return;
+  const bool same_epoch = last->correction.epoch == backend_->correction().epoch;
   auto corrected = std::make_shared<Snapshot>(*last);
   corrected->correction = backend_->correction();
   crossings_.snapshot.store(corrected);
+  if (same_epoch) return;
   events_.post({"epoch", 0, epoch_json(*corrected)});
 }
 
@@ -160,16 +199,17 @@ void BackendThread::tell(const slam::MapCorrection& before, const char* action) 
     events_.post({"loop", 0, std::move(fields)});
   }
   const slam::MapCorrection& now = backend_->correction();
-  if (now.placed == before.placed && now.confidence == before.confidence &&
-      now.epoch == before.epoch) {
-    return;
-  }
+  if (now.same_as(before)) return;
   crossings_.commands.post(now);
   if (now.epoch == before.epoch) return;
+  post_map_event(action != nullptr ? action : action_between(before, now, plan_.use));
+}
+
+void BackendThread::post_map_event(const char* action) {
   const slam::MapSnapshot& map = *backend_->snapshot();
   events_.post({"map",
                 0,
-                {{"action", action != nullptr ? action : action_between(before, now)},
+                {{"action", action},
                  {"map_epoch", map.epoch},
                  {"revision", map.revision},
                  {"points", map.point_count},
@@ -184,6 +224,7 @@ void BackendThread::publish() {
   state->pgo = pgo_duration_;
   state->loops_accepted = backend_->loops_accepted();
   state->loops_rejected = backend_->loops_rejected();
+  state->only_read = plan_.use == slam::MapUse::kLocalize;
   state->session_file = backend_->session_file().string();
   state->store_failures = backend_->store_failures();
   state->store_error = backend_->store_error();

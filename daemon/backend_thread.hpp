@@ -32,7 +32,10 @@ class BackendThread {
   void keep_session();
   [[nodiscard]] std::unique_ptr<slam::Backend> make_backend() const;
   void change_map(const MapChange& change);
+  void search_anew(const PlaceSearchRequest& request);
+  void take_end_of_search();
   void begin_another_map();
+  void post_map_event(const char* action);
   void tell(const slam::MapCorrection& before, const char* action = nullptr);
   [[nodiscard]] bool commit_session();
   void correct_last_snapshot();
@@ -45,6 +48,7 @@ class BackendThread {
   Heartbeat& heartbeat_;
   EventLog& events_;
   std::unique_ptr<slam::Backend> backend_;    ///< Never null.
+  bool told_not_found_ = false;               ///< Of the search that goes on.
   std::shared_ptr<const SensorInfo> sensor_;  ///< The one that the session file names.
   DurationStats duration_;
   DurationStats pgo_duration_;

@@ -246,13 +246,19 @@ constexpr std::array kKeys{
               1e8, "poses", "",
               "Latest poses kept for get_trajectory and get_pose at_ns, some 150 bytes each."},
 
-    ConfigKey{"map.on_start", &at<&Config::map, &Config::Map::on_start>, 0, 0, "", "new|continue",
+    ConfigKey{"map.on_start", &at<&Config::map, &Config::Map::on_start>, 0, 0, "",
+              "new|continue|localize:NAME",
               "Which map a start begins with. new: an empty one. continue: that of the latest "
               "session in state.directory, in which the robot finds its place by itself (state "
-              "LOCALIZING until then) and which goes on to grow; an empty one if there is none."},
-    ConfigKey{"map.search_s", &at<&Config::map, &Config::Map::search_s>, 5, 1e6, "s", "",
-              "A robot that has not found its place in that map for so long begins an empty one; "
-              "the session that it did not find itself in stays as it is."},
+              "LOCALIZING until then) and which goes on to grow; an empty one if there is none. "
+              "localize:NAME: that of the saved map NAME, which is only read: the robot finds its "
+              "place in it by itself and is told it from then on, and no session is kept."},
+    ConfigKey{
+        "map.search_s", &at<&Config::map, &Config::Map::search_s>, 5, 1e6, "s", "",
+        "A robot that has not found its place in that map for so long begins an empty one; "
+        "the session that it did not find itself in stays as it is. With localize:NAME it goes "
+        "on to search for ever, odometry going on, and an event tells. One that was lost in "
+        "the map that it is making goes on in it where odometry has it."},
 
     ConfigKey{"log.level", &at<&Config::log, &Config::Log::level>, 0, 0, "",
               "debug|info|warn|error", "Least severe message that is logged."},

@@ -94,10 +94,14 @@ struct ConfigKey {
   double min = 0.0;       ///< Smallest and largest value of a number, or of each of a list.
   double max = 0.0;
   std::string_view unit;  ///< Empty for none.
-  /// Allowed strings, separated by "|"; empty for any. Of a number: kAuto, or empty.
+  /// Allowed strings, separated by "|"; empty for any. One that ends in ":NAME" stands for all that
+  /// have the name of a map there. Of a number: kAuto, or empty.
   std::string_view choices;
   std::string_view doc;  ///< One sentence for the user.
 };
+
+/// What map.on_start begins with before the name of a map that is only read.
+constexpr std::string_view kLocalizePrefix = "localize:";
 
 /// What a number may be told as where Glint can find it itself, and how it is kept.
 constexpr std::string_view kAuto = "auto";

@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "daemon/config.hpp"
+#include "daemon/saved_maps.hpp"
 #include "driver/core/edit_distance.hpp"
 
 namespace glint::daemon {
@@ -54,7 +55,13 @@ bool in_range(const ConfigKey& key, double value) {
 bool is_choice(std::string_view choices, std::string_view value) {
   if (choices.empty()) return true;
   const std::string list = fmt::format("|{}|", choices);
-  return !value.empty() && list.find(fmt::format("|{}|", value)) != std::string::npos;
+  const auto is_listed = [&](std::string_view choice) {
+    return list.find(fmt::format("|{}|", choice)) != std::string::npos;
+  };
+  const auto colon = value.find(':');
+  if (colon == std::string_view::npos) return !value.empty() && is_listed(value);
+  return SavedMaps::is_name(value.substr(colon + 1)) &&
+         is_listed(fmt::format("{}:NAME", value.substr(0, colon)));
 }
 
 bool read(const ConfigKey&, const toml::node& node, bool& out) {

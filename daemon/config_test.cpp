@@ -2,6 +2,7 @@
 // Copyright 2026 The Glint Authors
 #include "daemon/config.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -132,6 +133,12 @@ TEST_F(ConfigTest, AStartBeginsWithAnEmptyMapOrTheLatestOne) {
   EXPECT_EQ(load_error("[map]\non_start = \"continue\"\n"), "");
   EXPECT_EQ(config_.map.on_start, "continue");
   EXPECT_THAT(load_error("[map]\non_start = \"resume\"\n"), HasSubstr("new|continue"));
+  EXPECT_EQ(load_error("[map]\non_start = \"localize:office-2\"\n"), "");
+  EXPECT_EQ(config_.map.on_start, "localize:office-2");
+  for (const char* bad : {"localize", "localize:", "localize:../x", "localize:a/b",
+                          "localize:NAME|", "new:x", "", "localize:a:b"}) {
+    EXPECT_NE(load_error(fmt::format("[map]\non_start = \"{}\"\n", bad)), "") << bad;
+  }
 }
 
 TEST_F(ConfigTest, ThePresetIsAppliedBeforeOtherKeysWhereverItStands) {

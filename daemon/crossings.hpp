@@ -12,6 +12,7 @@
 #include "daemon/command_mailbox.hpp"
 #include "daemon/commit_request.hpp"
 #include "daemon/map_change.hpp"
+#include "daemon/place_search_slot.hpp"
 #include "daemon/snapshot.hpp"
 #include "daemon/snapshot_slot.hpp"
 #include "driver/core/packet_source.hpp"
@@ -77,6 +78,7 @@ struct Crossings {
   BoundedQueue<Job> long_jobs;             ///< main -> jobs
   CommitRequest session_commit;            ///< jobs -> backend
   MapChangeSlot map_change;                ///< main -> backend
+  PlaceSearchSlot place_search;            ///< main -> backend
   CommandMailbox commands;                 ///< main, backend -> odometry
   SnapshotSlot<Snapshot> snapshot;         ///< odometry -> main
   SnapshotSlot<MapState> map;              ///< backend -> main, worker

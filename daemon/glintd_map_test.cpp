@@ -77,6 +77,83 @@ TEST_F(GlintdMapTest, AMapThatWasSavedIsLoadedAndTheSensorFoundInIt) {
   EXPECT_EQ(fs::path(found["session_file"].get<std::string>()).parent_path().filename(), "state");
 }
 
+TEST_F(GlintdMapTest, InAMapThatIsOnlyReadItFindsItselfFollowsItAndWritesNothing) {
+  std::vector<std::string> arguments = walk("room");
+  {
+    Process process(arguments, directory_);
+    ASSERT_FALSE(poll_status([](const Json& s) { return s["map"]["keyframes"] > 20; }).is_null());
+    Client(socket()).call("save_map", {{"name", "room"}});
+    const auto saved = [](const Json& s) { return s["jobs"][0]["state"] == "done"; };
+    ASSERT_FALSE(poll_status(saved).is_null()) << process.log();
+    process.signal(SIGTERM);
+    process.wait();
+  }
+  const fs::path state = directory_ / "state";
+  const auto files = std::distance(fs::recursive_directory_iterator(state), {});
+  const std::string bytes = read_file(state / "maps" / "room.glint");
+  arguments.insert(arguments.end(), {"--set", "map.on_start=localize:room"});
+  Process process(arguments, directory_);
+  const Json found = poll_status([](const Json& s) { return s["state"] == "TRACKING"; });
+  ASSERT_FALSE(found.is_null()) << process.log();
+  EXPECT_EQ(found["map"]["only_read"], true);
+  EXPECT_EQ(found["session_file"], "");
+  const int known = found["map"]["keyframes"];
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  Client client(socket());
+  // The same walk: it begins where the map's frame does, and what odometry errs by is millimetres.
+  const Json pose = client.call("get_pose");
+  ASSERT_TRUE(pose.contains("T_map_odom")) << pose;
+  for (const Json& x_m : pose["T_map_odom"]["p_m"]) EXPECT_LT(std::abs(x_m.get<double>()), 0.1);
+  EXPECT_GT(pose["confidence"], 0.9);
+  const auto epoch = client.call("get_status")["map_epoch"].get<int>();
+  // It is found again.
+  client.call("set_initial_pose", {{"p_m", pose["p_m"]}, {"q_xyzw", pose["q_xyzw"]}});
+  const Json again = poll_status([&](const Json& s) {
+    return s["state"] == "TRACKING" && s["map_epoch"].get<int>() >= epoch + 2;
+  });
+  ASSERT_FALSE(again.is_null()) << process.log();
+  EXPECT_EQ(again["map"]["keyframes"], known);
+  process.signal(SIGTERM);
+  EXPECT_EQ(process.wait(), 0);
+  EXPECT_EQ(read_file(state / "maps" / "room.glint"), bytes);
+  EXPECT_EQ(std::distance(fs::recursive_directory_iterator(state), {}), files);
+}
+
+TEST_F(GlintdMapTest, WhereTheMapIsOnlyReadAndAnotherPlacesItSaysSoAndGoesOnSearching) {
+  std::vector<std::string> arguments = walk("room");
+  {
+    Process process(arguments, directory_);
+    ASSERT_FALSE(poll_status([](const Json& s) { return s["map"]["keyframes"] > 5; }).is_null());
+    Client(socket()).call("save_map", {{"name", "room"}});
+    const auto saved = [](const Json& s) { return s["jobs"][0]["state"] == "done"; };
+    ASSERT_FALSE(poll_status(saved).is_null()) << process.log();
+    process.signal(SIGTERM);
+    process.wait();
+  }
+  arguments = walk("corridor");
+  arguments.insert(arguments.end(), {"--set", "map.on_start=localize:room"});
+  Process process(arguments, directory_);
+  ASSERT_FALSE(poll_status([](const Json& s) { return s["state"] == "LOCALIZING"; }).is_null());
+  Client watching(socket());
+  watching.call("subscribe", {{"topics", {"events"}}});
+  Json event = Json::object();
+  while (event.value("kind", "") != "map") {
+    event = watching.next_message(std::chrono::seconds(10))["params"];
+  }
+  EXPECT_EQ(event["action"], "not_found");
+  const Json status = Client(socket()).call("get_status");
+  EXPECT_EQ(status["state"], "LOCALIZING");
+  EXPECT_EQ(status["session_file"], "");
+  EXPECT_TRUE(Client(socket()).call("get_pose", {{"frame", "odom"}}).contains("p_m"));
+}
+
+TEST_F(GlintdMapTest, AMapThatIsNotThereIsABadConfiguration) {
+  std::vector<std::string> arguments = walk("room");
+  arguments.insert(arguments.end(), {"--set", "map.on_start=localize:attic"});
+  EXPECT_EQ(exit_code(arguments), 78);
+  EXPECT_THAT(log_, HasSubstr("there is no map 'attic'"));
+}
+
 TEST_F(GlintdMapTest, WhereItsMapIsNotItBeginsAnother) {
   std::string session;
   {

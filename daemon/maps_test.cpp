@@ -118,6 +118,36 @@ TEST_F(MapsTest, ALoadedMapIsThereAndTheSensorLooksForItsPlaceInIt) {
             before["map"]["keyframes"].get<std::size_t>());
 }
 
+TEST_F(MapsTest, AMapThatIsOnlyReadHasNoSessionAndNothingToSave) {
+  map_scans(8);
+  ASSERT_EQ(save("office")["state"], "done");
+  const std::string bytes = slam::test::read_bytes(map_file("office"));
+  const Json reply = client().call("load_map", {{"name", "office"}, {"mode", "localize"}});
+  ASSERT_EQ(wait_for_end(reply["job"]["id"].get<int>())["state"], "done");
+  ASSERT_TRUE(daemon_->wait_for("get_status", [](const Json& s) {
+    return s["state"] == "LOCALIZING" && s["map"]["only_read"] == true;
+  }));
+  EXPECT_EQ(client().call("get_status")["session_file"], "");
+  EXPECT_EQ(refusal("save_map", {{"name", "other"}})["data"]["code"], "NOT_TRACKING");
+  EXPECT_EQ(client().call("relocalize")["accepted"], true);
+  EXPECT_EQ(client().call("set_initial_pose", {{"p_m", {0, 0, 0}}})["accepted"], true);
+  daemon_.reset();
+  EXPECT_EQ(slam::test::read_bytes(map_file("office")), bytes);
+}
+
+TEST_F(MapsTest, ASearchThatIsAskedForBeginsInTheMapThereIs) {
+  EXPECT_EQ(refusal("relocalize")["data"]["code"], "NOT_TRACKING");
+  map_scans(8);
+  const Json before = client().call("get_status");
+  EXPECT_EQ(refusal("set_initial_pose")["data"]["field"], "p_m");
+  EXPECT_EQ(client().call("relocalize")["accepted"], true);
+  ASSERT_TRUE(
+      daemon_->wait_for("get_status", [](const Json& s) { return s["state"] == "LOCALIZING"; }));
+  const Json after = client().call("get_status");
+  EXPECT_EQ(after["map"]["keyframes"], before["map"]["keyframes"]);
+  EXPECT_GT(after["map_epoch"], before["map_epoch"]);
+}
+
 TEST_F(MapsTest, AMapThatIsNotThereOrDamagedChangesNothing) {
   map_scans(4);
   EXPECT_EQ(refusal("load_map", {{"name", "office"}})["data"]["code"], "NO_SUCH_MAP");

@@ -72,6 +72,14 @@ Pose newest_in_frames(const Pose& T_odom_sensor, const Snapshot& snapshot, PoseF
                         context);
 }
 
+/// Of the newest pose of the sensor: in a map that is only read it is as sure as its place there.
+Matrix6d covariance_in(PoseFrames frames, const Snapshot& snapshot) {
+  const slam::OdometryEstimate& estimate = *snapshot.estimate;
+  const auto& certainty = snapshot.correction.certainty;
+  return frames.map && certainty ? certainty->covariance_at(estimate.T_odom_sensor)
+                                 : estimate.covariance;
+}
+
 /// What the time of a pose is worth: where it comes from, and when it was on this machine.
 void put_clock(Json& out, ClockSource source, HostTime host_time, std::int64_t sigma_ns) {
   out["clock"] = to_string(source);
@@ -157,11 +165,12 @@ Json newest_pose_json(const Snapshot& snapshot, PoseFrames frames, const PoseCon
   const bool known = snapshot.correction.placed || !frames.map;
   if (known) {
     put_pose(out, newest_in_frames(estimate.T_odom_sensor, snapshot, frames, context));
-    put_covariance(out, estimate.covariance, frames, context);
+    put_covariance(out, covariance_in(frames, snapshot), frames, context);
   }
   put_velocity(out, estimate.velocity, frames, context);
   if (snapshot.correction.placed) {
     put_map_correction(out, snapshot.correction.T_map_odom, snapshot.correction.epoch);
+    if (snapshot.correction.certainty) out["confidence"] = snapshot.correction.confidence;
   } else {
     out["map_epoch"] = snapshot.correction.epoch;  // Absent means unknown.
     out["confidence"] = snapshot.correction.confidence;

@@ -199,15 +199,13 @@ Json status_json(const RuntimeStatus& runtime, const ServiceStatus& service, std
   out["clock"] = clock_json(snapshot);
   if (snapshot.imu.packets > 0) out["imu"] = imu_json(snapshot.imu);
   out["map_epoch"] = snapshot.correction.epoch;
-  if (!snapshot.correction.placed) {
+  if (!snapshot.correction.placed || runtime.map->only_read) {
     out["localization"] = Json{{"confidence", snapshot.correction.confidence}};
   }
   const slam::MapSnapshot& map = *runtime.map->map;
-  out["map"] = Json{{"revision", map.revision},
-                    {"tiles", map.tiles.size()},
-                    {"points", map.point_count},
-                    {"points_refused", map.points_refused},
-                    {"keyframes", map.keyframe_count}};
+  out["map"] = Json{{"revision", map.revision},        {"tiles", map.tiles.size()},
+                    {"points", map.point_count},       {"points_refused", map.points_refused},
+                    {"keyframes", map.keyframe_count}, {"only_read", runtime.map->only_read}};
   out["counters"] = counters_json(runtime);
   out["counters"]["sessions_removed"] = service.sessions_removed;
   out["stage_ms"] = stages_json(runtime);

@@ -125,6 +125,23 @@ TEST_F(PoseJsonTest, FramesCompose) {
   EXPECT_EQ(json["child"], "base");
 }
 
+TEST_F(PoseJsonTest, InAMapThatIsOnlyReadThePoseIsAsSureAsItsPlaceThere) {
+  auto certainty = std::make_shared<slam::PlaceCertainty>();
+  certainty->T_odom_sensor = snapshot_.estimate->T_odom_sensor;
+  certainty->covariance.diagonal().setConstant(0.04);
+  snapshot_.correction.certainty = certainty;
+  snapshot_.correction.confidence = 0.75;
+  const Json map = pose({{"frame", "map"}});
+  EXPECT_NEAR(map["cov"][0].get<double>(), 0.04, 1e-12);
+  EXPECT_NEAR(map["cov"][35].get<double>(), 0.04, 1e-12);
+  EXPECT_EQ(map["confidence"], 0.75);
+  EXPECT_NEAR(pose({{"frame", "odom"}})["cov"][0].get<double>(),
+              snapshot_.estimate->covariance(0, 0), 1e-12);
+  // Some way on it is less sure.
+  snapshot_.estimate->T_odom_sensor.translation_m.x() += 0.4;
+  EXPECT_GT(pose({{"frame", "map"}})["cov"][0].get<double>(), 0.04);
+}
+
 TEST_F(PoseJsonTest, WhileItsPlaceIsLookedForNothingIsKnownInTheMap) {
   snapshot_.correction.placed = false;
   snapshot_.correction.confidence = 1.0 / 3.0;

@@ -110,6 +110,10 @@ class Runtime {
   /// The back end goes on with another map, or an empty one, as soon as it can; the job is told of
   /// it.
   void change_map(MapChange change) { crossings_.map_change.post(std::move(change)); }
+  /// The sensor's place in the map is looked for anew as soon as the back end can.
+  void search_place(PlaceSearchRequest request) {
+    crossings_.place_search.post(std::move(request));
+  }
   [[nodiscard]] JobBoard& jobs() { return jobs_; }
   /// Brings the session onto the disk as it is now; for the jobs thread, `job` may be given up
   /// meanwhile. False when it was. @throws InputError when the session cannot be written.

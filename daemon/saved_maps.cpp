@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <system_error>
 
 #include "daemon/session_files.hpp"
@@ -14,10 +13,6 @@ namespace glint::daemon {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t kLongestName = 64;
-constexpr std::string_view kLettersAndDigits =
-    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789";
 
 InputError unusable(const fs::path& directory, const std::error_code& error) {
   return InputError(
@@ -30,15 +25,6 @@ InputError unusable(const fs::path& directory, const std::error_code& error) {
 
 SavedMaps::SavedMaps(const fs::path& state_directory)
     : directory_(state_directory.empty() ? fs::path() : state_directory / "maps") {}
-
-bool SavedMaps::is_name(std::string_view name) {
-  const auto letter_or_digit = [](char c) {
-    return kLettersAndDigits.find(c) != std::string_view::npos;
-  };
-  return !name.empty() && name.size() <= kLongestName && letter_or_digit(name.front()) &&
-         std::ranges::all_of(
-             name, [&](char c) { return letter_or_digit(c) || c == '.' || c == '_' || c == '-'; });
-}
 
 fs::path SavedMaps::file_of(std::string_view name) const {
   if (!is_name(name)) throw InputError(fmt::format("a map's name is {}", kNameRule));

@@ -2,6 +2,7 @@
 // Copyright 2026 The Glint Authors
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -18,7 +19,14 @@ class SavedMaps {
   explicit SavedMaps(const std::filesystem::path& state_directory);
 
   /// A letter or digit, then up to 63 of letters, digits, '.', '_' and '-', all of them ASCII.
-  [[nodiscard]] static bool is_name(std::string_view name);
+  [[nodiscard]] static bool is_name(std::string_view name) {
+    constexpr std::string_view kFirst =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789";
+    const auto is_first = [&](char c) { return kFirst.find(c) != std::string_view::npos; };
+    return !name.empty() && name.size() <= kLongestName && is_first(name.front()) &&
+           std::ranges::all_of(
+               name, [&](char c) { return is_first(c) || c == '.' || c == '_' || c == '-'; });
+  }
   /// What is_name() asks for, for a message.
   static constexpr std::string_view kNameRule =
       "1 to 64 of A-Z a-z 0-9 . _ -, the first one a letter or a digit";
@@ -36,6 +44,7 @@ class SavedMaps {
   [[nodiscard]] bool remove(std::string_view name) const;
 
  private:
+  static constexpr std::size_t kLongestName = 64;
   std::filesystem::path directory_;
 };
 

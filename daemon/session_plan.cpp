@@ -2,12 +2,15 @@
 // Copyright 2026 The Glint Authors
 #include "daemon/session_plan.hpp"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <string_view>
 #include <vector>
 
 #include "daemon/input.hpp"
+#include "daemon/saved_maps.hpp"
 #include "daemon/session_files.hpp"
 #include "driver/core/error.hpp"
 #include "slam/store/session_reader.hpp"
@@ -26,6 +29,20 @@ bool has_keyframes(const fs::path& file) {
   }
 }
 
+// The saved map of that name.
+fs::path map_to_localize_in(const Config& config, std::string_view name) {
+  const SavedMaps maps(state_directory(config));
+  if (!maps.has_place()) {
+    throw ConfigError(fmt::format("map.on_start = \"{}{}\" needs state.directory, where maps are",
+                                  kLocalizePrefix, name));
+  }
+  if (!maps.contains(name)) {
+    throw ConfigError(fmt::format("map.on_start: there is no map '{}': {} is missing", name,
+                                  maps.file_of(name).string()));
+  }
+  return maps.file_of(name);
+}
+
 }  // namespace
 
 SessionPlan plan_session_anew(const Config& config) {
@@ -42,7 +59,21 @@ SessionPlan plan_extension(const Config& config, const fs::path& earlier) {
   return plan;
 }
 
+SessionPlan plan_localization(const Config& config, const fs::path& map) {
+  SessionPlan plan;
+  plan.earlier = map;
+  plan.search_s = config.map.search_s;
+  plan.use = slam::MapUse::kLocalize;
+  return plan;
+}
+
 SessionPlan plan_session(const Config& config) {
+  if (config.map.on_start.starts_with(kLocalizePrefix)) {
+    const std::string_view name =
+        std::string_view{config.map.on_start}.substr(kLocalizePrefix.size());
+    spdlog::info("the place of the sensor is told in the map {}, which is only read", name);
+    return plan_localization(config, map_to_localize_in(config, name));
+  }
   SessionPlan plan = plan_session_anew(config);
   if (config.map.on_start != "continue" || plan.file.empty()) return plan;
   const std::vector<fs::path> sessions = own_sessions(plan.file.parent_path());

@@ -68,6 +68,21 @@ TEST_F(SessionPlanTest, EmptyAndDamagedSessionsAndMapsOfOtherNamesArePassedOver)
   EXPECT_EQ(slam::test::read_bytes(damaged), "no session at all") << "it is left as it is";
 }
 
+TEST_F(SessionPlanTest, AMapToLocaliseInIsTheSavedOneOfThatNameAndNothingIsKept) {
+  fs::create_directories(directory_ / "maps");
+  make("maps/office.glint", 2, 1h);
+  config_.map.on_start = "localize:office";
+  const SessionPlan plan = plan_session(config_);
+  EXPECT_EQ(plan.earlier, directory_ / "maps" / "office.glint");
+  EXPECT_EQ(plan.file, "");
+  EXPECT_EQ(plan.otherwise, "");
+  EXPECT_EQ(plan.use, slam::MapUse::kLocalize);
+  config_.map.on_start = "localize:attic";
+  EXPECT_THROW(plan_session(config_), ConfigError);
+  config_.state.directory = "";
+  EXPECT_THROW(plan_session(config_), ConfigError);
+}
+
 TEST_F(SessionPlanTest, WithoutAnySessionOrPlaceForOneAMapIsBegun) {
   EXPECT_EQ(plan_session(config_).earlier, "");
   EXPECT_NE(plan_session(config_).file, "");

@@ -4,10 +4,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "driver/core/clock.hpp"
@@ -68,6 +70,8 @@ class Backend {
   /// From here on that is done by itself when tracking restarts in a new segment. (A map that is
   /// only read always does.)
   void search_new_segments() { searches_new_segments_ = true; }
+  /// To be called now and then while something takes long.
+  void call_meanwhile(std::function<void()> alive) { alive_ = std::move(alive); }
   [[nodiscard]] MapSearch search() const;
   /// Whether the last call gave up the guess that the search began with.
   [[nodiscard]] bool guess_dropped() const;
@@ -156,6 +160,7 @@ class Backend {
   std::uint32_t first_segment_ = 0;
   std::vector<std::uint32_t> set_apart_;  ///< Segments that are not new ones of odometry.
   bool searches_new_segments_ = false;
+  std::function<void()> alive_;  ///< May be empty.
   MapCorrection correction_;
   std::shared_ptr<const MapSnapshot> snapshot_;
   std::vector<LoopReport> loop_reports_;

@@ -51,6 +51,7 @@ std::optional<Relocalizer> Backend::knowing_own_map() {
     Relocalizer relocalizer(open_vocabulary(config_.vocabulary));
     session.for_each_keyframe([&](SessionKeyframe&& stored) {
       relocalizer.remember(stored.keyframe, stored.T_map_sensor);
+      if (alive_) alive_();
     });
     return relocalizer;
   } catch (const InputError&) {

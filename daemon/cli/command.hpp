@@ -39,6 +39,7 @@ void add_watch(CLI::App& app);
 void add_map(CLI::App& app);
 void add_maps(CLI::App& app);
 void add_load(CLI::App& app);
+void add_relocalize(CLI::App& app);
 void add_save(CLI::App& app);
 void add_delete_map(CLI::App& app);
 void add_export(CLI::App& app);

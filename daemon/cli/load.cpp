@@ -16,12 +16,14 @@ namespace {
 struct LoadCommand {
   ClientOptions client;
   std::string name;
+  std::string mode = "extend";
 };
 
 void load(const LoadCommand& command) {
   expect_map_name(command.name);
   with_client(command.client, [&](daemon::Client& client) {
-    const daemon::Json job = run_job(client, command.client, "load_map", {{"name", command.name}},
+    const daemon::Json job = run_job(client, command.client, "load_map",
+                                     {{"name", command.name}, {"mode", command.mode}},
                                      fmt::format("the map {} was not loaded", command.name));
     if (command.client.json) return;
     fmt::print("{}: {} keyframes; the sensor looks for its place in it\n", command.name,
@@ -36,6 +38,10 @@ void add_load(CLI::App& app) {
   CLI::App* sub = app.add_subcommand("load", "Have the daemon go on with a map that was saved");
   add_client_options(*sub, command->client);
   sub->add_option("name", command->name, "Its name; glint maps --connect lists all")->required();
+  sub->add_option("--mode", command->mode,
+                  "extend: the map goes on to grow; localize: it is only read")
+      ->check(CLI::IsMember({"extend", "localize"}))
+      ->capture_default_str();
   sub->callback([command] { load(*command); });
 }
 

@@ -35,6 +35,7 @@ int run(int argc, char** argv) {
   add_map(app);
   add_maps(app);
   add_load(app);
+  add_relocalize(app);
   add_save(app);
   add_delete_map(app);
   add_export(app);

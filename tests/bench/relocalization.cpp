@@ -4,18 +4,22 @@
 // Relocalisation without a guess against the truth of simulated worlds: a sensor that wakes up at
 // one place after the other of a second walk is looked for in the map of a first one.
 //
-//   relocalization [--seconds S] [--every S] MAP QUERIES...
+//   relocalization [--seconds S] [--every S] [--follow] MAP QUERIES...
 //   relocalization building,seed=2,seconds=200 building,seed=2,seconds=60,trajectory=other.tum
 //
 // Each simulation is WORLD[,name=value...]. The sensor wakes up each `every` seconds (default 4)
 // and has `seconds` (default 2) to be found. Where it is within 3 m (6 m in the open) of the first
 // walk it should be; it is found wrongly when it is off by more than 0.3 m or 3 degrees, or
-// elsewhere.
+// elsewhere. With --follow it wakes up once and is followed in the map, which is only read, until
+// the end: errors are those of each scan's pose in the map from where it was found on, beside those
+// of odometry alone.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <ctime>
 #include <iostream>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +27,7 @@
 #include "pcap/synth/simulator.hpp"
 #include "slam/frontend.hpp"
 #include "slam/loops/relocalizer.hpp"
+#include "slam/map_localizer.hpp"
 
 namespace glint {
 namespace {
@@ -139,12 +144,76 @@ void look(const std::string& text, double seconds, double every, const std::vect
       median(figures.cpu_ms, 1.0));
 }
 
+// Root mean square and largest distance from the truth.
+struct Errors {
+  void add(const Pose& truth, const Pose& pose) {
+    const double off_m = (truth.translation_m - pose.translation_m).norm();
+    squares_m2 += off_m * off_m;
+    most_m = std::max(most_m, off_m);
+    ++count;
+  }
+  [[nodiscard]] double rms_m() const { return std::sqrt(squares_m2 / std::max(1, count)); }
+
+  double squares_m2 = 0.0;
+  double most_m = 0.0;
+  int count = 0;
+};
+
+void follow(const std::string& text, const slam::Relocalizer& map) {
+  synth::Simulator simulator(synth::parse_simulation(text, {}));
+  slam::Frontend frontend(simulator.info(), {});
+  slam::MapLocalizer localizer(map);
+  slam::MapCorrection correction;
+  correction.placed = false;
+  std::optional<Pose> T_world_odom;
+  Errors followed;
+  Errors odometry;
+  Errors anchored;
+  double sigmas_m2 = 0.0;
+  int misfits = 0;
+  int keyframes = 0;
+  int scans = 0;
+  std::vector<double> cpu_ms;
+  LidarScan scan;
+  synth::ScanTruth truth;
+  while (simulator.next(scan, truth)) {
+    ++scans;
+    frontend.set_searching(!correction.placed);
+    const slam::OdometryEstimate estimate = frontend.process(scan);
+    const Pose T_world_sensor = simulator.true_pose(scan.end_time);
+    if (correction.placed) {
+      followed.add(T_world_sensor, correction.T_map_odom * estimate.T_odom_sensor);
+      odometry.add(T_world_sensor, *T_world_odom * estimate.T_odom_sensor);
+    }
+    const auto keyframe = frontend.take_keyframe();
+    if (!keyframe) continue;
+    const double start_ms = thread_cpu_ms();
+    localizer.process(*keyframe, correction);
+    if (!correction.placed) continue;
+    cpu_ms.push_back(thread_cpu_ms() - start_ms);
+    if (!T_world_odom) T_world_odom = T_world_sensor * estimate.T_odom_sensor.inverse();
+    ++keyframes;
+    misfits += correction.confidence < 1.0 ? 1 : 0;
+    anchored.add(T_world_sensor, correction.T_map_odom * estimate.T_odom_sensor);
+    sigmas_m2 += correction.certainty->covariance.diagonal().head<3>().sum();
+  }
+  fmt::print(
+      "{}: {} of {} scans in the map, off by {:.3f} m rms, {:.3f} at most (odometry from the first "
+      "one on {:.3f} and {:.3f}); {} keyframes, {} do not fit, {:.3f} m rms where the covariance "
+      "says {:.3f}; {:.1f} ms a keyframe, at most {:.1f}; epoch {}\n",
+      text, followed.count, scans, followed.rms_m(), followed.most_m, odometry.rms_m(),
+      odometry.most_m, keyframes, misfits, anchored.rms_m(),
+      std::sqrt(sigmas_m2 / std::max(1, keyframes)), median(cpu_ms), median(cpu_ms, 1.0),
+      correction.epoch);
+}
+
 }  // namespace
 }  // namespace glint
 
 int main(int argc, char** argv) try {
   double seconds = 2.0;
   double every = 4.0;
+  bool follows = false;
   std::vector<std::string> simulations;
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
@@ -152,6 +221,8 @@ int main(int argc, char** argv) try {
       seconds = std::stod(argv[++i]);
     } else if (argument == "--every" && i + 1 < argc) {
       every = std::stod(argv[++i]);
+    } else if (argument == "--follow") {
+      follows = true;
     } else {
       simulations.push_back(argument);
     }
@@ -162,6 +233,8 @@ int main(int argc, char** argv) try {
     if (i == 0) {
       map = glint::make_map(simulations[0], relocalizer);
       fmt::print("{}: {} keyframes\n", simulations[0], map.size());
+    } else if (follows) {
+      glint::follow(simulations[i], relocalizer);
     } else {
       glint::look(simulations[i], seconds, every, map, relocalizer);
     }
