@@ -265,27 +265,34 @@ Json Api::call_load_map(const Json& params) {
                     extends ? plan_extension(config_, file) : plan_localization(config_, file));
 }
 
-Json Api::call_relocalize(const Json&) { return search_place({}); }
+Json Api::call_relocalize(const Json&) {
+  expect_a_map_to_search();
+  return search_place({});
+}
 
 Json Api::call_set_initial_pose(const Json& params) {
+  expect_a_map_to_search();
   return search_place({parse_place_guess(params, config_.mount.T_base_sensor)});
 }
 
 Json Api::search_place(PlaceSearchRequest request) {
+  runtime_.search_place(std::move(request));
+  Json out = head();
+  out["accepted"] = true;
+  return out;
+}
+
+void Api::expect_a_map_to_search() const {
   const auto map = runtime_.status().map;
-  if (map->map->keyframe_count == 0) {
-    throw RpcError(kNotTracking, "there is no map yet in which the sensor could be looked for");
-  }
   if (!map->only_read && map->session_file.empty() && runtime_.snapshot()->correction.placed) {
     throw RpcError(kNotConfigured,
                    "no session is kept, without which the map cannot be searched: set "
                    "state.directory and start the daemon anew",
                    "state.directory");
   }
-  runtime_.search_place(std::move(request));
-  Json out = head();
-  out["accepted"] = true;
-  return out;
+  if (map->map->keyframe_count == 0) {
+    throw RpcError(kNotTracking, "there is no map yet in which the sensor could be looked for");
+  }
 }
 
 Json Api::call_clear_map(const Json&) {

@@ -77,6 +77,7 @@ class Api {
   Json call_relocalize(const Json& params);
   Json call_set_initial_pose(const Json& params);
   Json search_place(PlaceSearchRequest request);
+  void expect_a_map_to_search() const;
   Json change_map(const std::string& kind, SessionPlan plan);
   [[noreturn]] void refuse_job() const;
   WorkerStep call_get_map(const Json& params);

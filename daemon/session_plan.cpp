@@ -71,8 +71,9 @@ SessionPlan plan_session(const Config& config) {
   if (config.map.on_start.starts_with(kLocalizePrefix)) {
     const std::string_view name =
         std::string_view{config.map.on_start}.substr(kLocalizePrefix.size());
-    spdlog::info("the place of the sensor is told in the map {}, which is only read", name);
-    return plan_localization(config, map_to_localize_in(config, name));
+    const fs::path map = map_to_localize_in(config, name);
+    spdlog::info("the sensor is looked for in the map {}, which is only read", map.string());
+    return plan_localization(config, map);
   }
   SessionPlan plan = plan_session_anew(config);
   if (config.map.on_start != "continue" || plan.file.empty()) return plan;
