@@ -38,4 +38,9 @@ struct Keyframe {
   bool probe = false;
 };
 
+/// A keyframe that is a pose in the graph and nothing else: what it saw others show.
+inline bool is_bare(const Keyframe& keyframe) {
+  return keyframe.points.empty() && keyframe.features.size() == 0;
+}
+
 }  // namespace glint::slam

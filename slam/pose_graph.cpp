@@ -121,12 +121,23 @@ std::optional<LoopMisfit> PoseGraph::misfit(const LoopEdge& loop) const {
                     chi_squared(*edge, poses_)};
 }
 
+std::vector<std::uint32_t> PoseGraph::groups() const {
+  std::vector<Pose> poses = poses_;
+  return join_groups(poses);
+}
+
+std::vector<LoopEdge> PoseGraph::loops() const {
+  std::vector<LoopEdge> edges;
+  edges.reserve(loops_.size());
+  for (const Loop& loop : loops_) edges.push_back(loop.edge);
+  return edges;
+}
+
 bool PoseGraph::joined(const LoopEdge& loop) const {
   const auto from = find(loop.from);
   const auto to = find(loop.to);
   if (!from || !to) return false;
-  std::vector<Pose> poses = poses_;
-  const std::vector<std::uint32_t> group = join_groups(poses);
+  const std::vector<std::uint32_t> group = groups();
   return group[*from] == group[*to];
 }
 

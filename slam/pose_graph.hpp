@@ -58,6 +58,10 @@ class PoseGraph {
   /// Adds an edge for which misfit() is not null. Poses stay until optimize().
   void add_loop(const LoopEdge& loop);
   [[nodiscard]] std::size_t loop_count() const { return loops_.size(); }
+  /// The edges that are in, in order of their arrival.
+  [[nodiscard]] std::vector<LoopEdge> loops() const;
+  /// A number for each node; those that hold together have the same.
+  [[nodiscard]] std::vector<std::uint32_t> groups() const;
 
   /// The last keyframe stands askew by what it felt of gravity: optimize() is worth while.
   [[nodiscard]] bool tilted() const { return tilted_; }

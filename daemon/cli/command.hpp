@@ -38,6 +38,7 @@ void add_pose(CLI::App& app);
 void add_watch(CLI::App& app);
 void add_map(CLI::App& app);
 void add_maps(CLI::App& app);
+void add_merge(CLI::App& app);
 void add_load(CLI::App& app);
 void add_relocalize(CLI::App& app);
 void add_save(CLI::App& app);

@@ -34,6 +34,7 @@ int run(int argc, char** argv) {
   add_watch(app);
   add_map(app);
   add_maps(app);
+  add_merge(app);
   add_load(app);
   add_relocalize(app);
   add_save(app);

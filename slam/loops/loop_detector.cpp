@@ -58,6 +58,7 @@ LoopDetector::LoopDetector(std::shared_ptr<const Vocabulary> vocabulary, bool de
 }
 
 void LoopDetector::remember(const Keyframe& keyframe) {
+  if (is_bare(keyframe)) return;
   append(keyframe);
   last_bag_ = vocabulary_->bag_of(places_.back().descriptors);
   index_.add(last_bag_);

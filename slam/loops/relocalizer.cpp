@@ -51,6 +51,7 @@ Relocalizer::Relocalizer(std::shared_ptr<const Vocabulary> vocabulary)
     : vocabulary_(std::move(vocabulary)), index_(vocabulary_->word_count()) {}
 
 void Relocalizer::remember(const Keyframe& keyframe, const Pose& T_map_sensor) {
+  if (is_bare(keyframe)) return;
   Place& place = places_.emplace_back(make_place(keyframe));
   place.T_odom_sensor = T_map_sensor;
   index_.add(vocabulary_->bag_of(place.descriptors));

@@ -48,7 +48,8 @@ class Relocalizer {
  public:
   explicit Relocalizer(std::shared_ptr<const Vocabulary> vocabulary);
 
-  /// A keyframe of the map, in the order of its session, and where the map has it.
+  /// A keyframe of the map, in the order of its session, and where the map has it. A bare one is
+  /// no place to be found.
   void remember(const Keyframe& keyframe, const Pose& T_map_sensor);
   [[nodiscard]] std::size_t place_count() const { return places_.size(); }
   /// Theirs, in that order; their odometry is the map.
