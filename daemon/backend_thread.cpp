@@ -13,6 +13,12 @@
 namespace glint::daemon {
 namespace {
 
+slam::SlamConfig slam_config(const Config& config) {
+  slam::SlamConfig slam = config.slam;
+  slam.map_memory_mb = config.map.memory_mb;
+  return slam;
+}
+
 constexpr std::chrono::milliseconds kKeyframeWait{100};
 
 // What has happened to the map, or to the sensor in one that is only read.
@@ -28,7 +34,7 @@ const char* action_between(const slam::MapCorrection& before, const slam::MapCor
 BackendThread::BackendThread(const Config& config, SessionPlan plan,
                              std::function<slam::LoopSource()> make_loops, Crossings& crossings,
                              Heartbeat& heartbeat, EventLog& events)
-    : config_(config.slam),
+    : config_(slam_config(config)),
       make_loops_(std::move(make_loops)),
       plan_(std::move(plan)),
       crossings_(crossings),
@@ -220,6 +226,7 @@ void BackendThread::publish() {
   auto state = std::make_shared<MapState>();
   state->map = backend_->snapshot();
   if (state->map == nullptr) state->map = std::make_shared<const slam::MapSnapshot>();
+  state->memory = backend_->memory();
   state->backend = duration_;
   state->pgo = pgo_duration_;
   state->loops_accepted = backend_->loops_accepted();

@@ -259,6 +259,12 @@ constexpr std::array kKeys{
         "the session that it did not find itself in stays as it is. With localize:NAME it goes "
         "on to search for ever, odometry going on, and an event tells. One that was lost in "
         "the map that it is making goes on in it where odometry has it."},
+    ConfigKey{"map.memory_mb", &at<&Config::map, &Config::Map::memory_mb>, 0, 1e6, "MB", "",
+              "Memory that map, pose graph and known places may take. At 80 % of it places seen "
+              "longer ago, then tiles of the map, go to the disk (a file without a name, in "
+              "state.directory) and come back when they are seen or asked for. At 100 %, when the "
+              "disk takes no more, keyframes still go into graph and session, but map and places "
+              "stop growing; tracking goes on. 0: no limit."},
 
     ConfigKey{"log.level", &at<&Config::log, &Config::Log::level>, 0, 0, "",
               "debug|info|warn|error", "Least severe message that is logged."},

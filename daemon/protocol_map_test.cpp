@@ -26,10 +26,12 @@ class MapPageTest : public testing::Test {
       auto tile = std::make_shared<slam::MapTile>();
       tile->index = {k, 0, -1};
       tile->revision = static_cast<std::uint64_t>(k) + 1;
+      std::vector<MapPoint> points;
       for (std::size_t i = 0; i < points_per_tile; ++i) {
-        tile->points.push_back({static_cast<float>(k) * 16.0F + within(random), within(random),
-                                within(random) - 16.0F, static_cast<float>(i)});
+        points.push_back({static_cast<float>(k) * 16.0F + within(random), within(random),
+                          within(random) - 16.0F, static_cast<float>(i)});
       }
+      tile->points = std::move(points);
       map_.point_count += tile->points.size();
       map_.tiles.push_back(std::move(tile));
     }

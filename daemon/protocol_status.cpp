@@ -14,6 +14,7 @@ namespace glint::daemon {
 namespace {
 
 constexpr double kMsPerNs = 1e-6;
+constexpr double kMbPerByte = 1e-6;
 
 /// Resident memory now, MB.
 double resident_mb() {
@@ -203,9 +204,15 @@ Json status_json(const RuntimeStatus& runtime, const ServiceStatus& service, std
     out["localization"] = Json{{"confidence", snapshot.correction.confidence}};
   }
   const slam::MapSnapshot& map = *runtime.map->map;
-  out["map"] = Json{{"revision", map.revision},        {"tiles", map.tiles.size()},
-                    {"points", map.point_count},       {"points_refused", map.points_refused},
-                    {"keyframes", map.keyframe_count}, {"only_read", runtime.map->only_read}};
+  out["map"] = Json{{"revision", map.revision},
+                    {"tiles", map.tiles.size()},
+                    {"points", map.point_count},
+                    {"points_refused", map.points_refused},
+                    {"keyframes", map.keyframe_count},
+                    {"only_read", runtime.map->only_read},
+                    {"memory_mb", static_cast<double>(runtime.map->memory.bytes) * kMbPerByte},
+                    {"disk_mb", static_cast<double>(runtime.map->memory.disk_bytes) * kMbPerByte},
+                    {"full", runtime.map->memory.full}};
   out["counters"] = counters_json(runtime);
   out["counters"]["sessions_removed"] = service.sessions_removed;
   out["stage_ms"] = stages_json(runtime);

@@ -16,6 +16,7 @@
 #include "slam/load_level.hpp"
 #include "slam/map.hpp"
 #include "slam/map_correction.hpp"
+#include "slam/map_memory.hpp"
 #include "slam/odometry_estimate.hpp"
 
 namespace glint::daemon {
@@ -66,6 +67,7 @@ struct Snapshot {
 /// What the back end knows after a keyframe. Immutable once published.
 struct MapState {
   std::shared_ptr<const slam::MapSnapshot> map;  ///< Never null.
+  slam::MapMemory memory;
   DurationStats backend;
   DurationStats pgo;
   std::uint64_t loops_accepted = 0;

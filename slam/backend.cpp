@@ -90,6 +90,7 @@ void Backend::process(const Keyframe& keyframe) {
   }
   store_changes();
   keep_session();
+  keep_within_memory();
   publish();
 }
 
@@ -101,9 +102,14 @@ void Backend::take(const Keyframe& keyframe) {
   }
   const Pose T_map_sensor = graph_.poses().back();
   if (!map_) make_map(keyframe);
-  map_->insert(T_map_sensor, config_.moving_objects ? moving_.standing(keyframe) : keyframe.points);
+  const auto& points = config_.moving_objects ? moving_.standing(keyframe) : keyframe.points;
+  if (memory_.full) {
+    map_->skip_view(points.size());
+  } else {
+    map_->insert(T_map_sensor, points);
+  }
   if (store_) store_->add(keyframe, T_map_sensor);
-  if (loops_) look_for_loops(keyframe);
+  if (loops_ && !memory_.full) look_for_loops(keyframe);
   if (graph_.tilted()) settle();
 }
 

@@ -21,6 +21,7 @@
 #include "slam/map.hpp"
 #include "slam/map_correction.hpp"
 #include "slam/map_localizer.hpp"
+#include "slam/map_memory.hpp"
 #include "slam/moving_points.hpp"
 #include "slam/pose_graph.hpp"
 #include "slam/stage_times.hpp"
@@ -96,6 +97,11 @@ class Backend {
   [[nodiscard]] const MapCorrection& correction() const { return correction_; }
   /// The map now; immutable, to be handed to clients.
   [[nodiscard]] std::shared_ptr<const MapSnapshot> snapshot() const { return snapshot_; }
+  /// What map, graph and known places take. Where `map_memory_mb` sets a limit, from 80 % of it on
+  /// places seen longer ago, and then tiles, go to a file without a name beside the session (else
+  /// among temporary files), and come back when they are seen again. Where that takes no more, at
+  /// 100 % keyframes still go into graph and session, but not into map and known places.
+  [[nodiscard]] const MapMemory& memory() const { return memory_; }
   /// What the last call found out about loops.
   [[nodiscard]] const std::vector<LoopReport>& loop_reports() const { return loop_reports_; }
   /// Edges in the graph, and candidates that are none, or no more.
@@ -140,6 +146,8 @@ class Backend {
   void report_refused(const LoopEdge& edge, const char* reason);
   void correct(const std::vector<Pose>& before);
   void make_map(const Keyframe& first);
+  void keep_within_memory();
+  [[nodiscard]] std::size_t memory_bytes() const;
   void store_changes();
   void publish();
 
@@ -149,7 +157,10 @@ class Backend {
   const LoopSource loops_;
   PoseGraph graph_;
   MovingPoints moving_;
-  std::optional<VoxelMap> map_;  ///< Made with the first keyframe, whose ranges set the voxels.
+  std::optional<VoxelMap> map_;     ///< Made with the first keyframe, whose ranges set the voxels.
+  std::shared_ptr<ColdFile> cold_;  ///< For what is not to stay in memory; made when it is needed.
+  bool cold_tried_ = false;
+  MapMemory memory_;
   std::unique_ptr<SessionStore> store_;
   std::string no_session_because_;            ///< Why there is none after the place was found.
   std::shared_ptr<const SensorInfo> sensor_;  ///< For a session that is yet to be made.

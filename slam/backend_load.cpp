@@ -19,6 +19,9 @@ namespace {
 constexpr double kBetween_m = 0.01;
 constexpr double kBetween_rad = 0.002;
 
+// Keyframes that are read between two looks at how much memory they take.
+constexpr std::uint64_t kBetweenLooksAtMemory = 100;
+
 // Keyframes that wait for their place to be known: some 200 MB of them. The oldest go first.
 constexpr std::size_t kMostWaiting = 500;
 
@@ -66,6 +69,7 @@ void Backend::load(const std::filesystem::path& session, MapUse use) {
   correction_.placed = false;
   correction_.confidence = 0.0;
   ++correction_.epoch;
+  keep_within_memory();
   publish();
 }
 
@@ -81,6 +85,7 @@ void Backend::restore(const SessionReader& session, Relocalizer& relocalizer) {
     relocalizer.remember(keyframe, stored.T_map_sensor);
     first_keyframe_ = keyframe.id + 1;
     first_segment_ = keyframe.estimate.segment + 1;
+    if (keyframe.id % kBetweenLooksAtMemory == 0) keep_within_memory();
   });
   for (const LoopEdge& loop : session.loop_edges()) graph_.restore_loop(loop);
 }

@@ -129,6 +129,9 @@ struct SlamConfig {
   int map_max_points = 4000000;
   /// Every n-th column of a keyframe goes into the map.
   int map_column_step = 2;
+  /// Memory that map, graph and known places may take, MB, see Backend::memory(); 0: they grow as
+  /// they need. Not one of a preset's values.
+  int map_memory_mb = 0;
 };
 
 /// The values of a preset: "paper" or "full". @throws InputError for any other name.

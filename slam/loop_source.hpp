@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "slam/cold_file.hpp"
 #include "slam/keyframe.hpp"
 #include "slam/loop_edge.hpp"
 
@@ -25,6 +26,11 @@ struct LoopSource {
   /// Takes the keyframes of a session that is gone on with, in order, before all others. May be
   /// empty: then only those that were asked about are known.
   std::function<void(const Keyframe& keyframe)> remember = {};
+
+  /// Memory taken by what is known, about, bytes. May be empty: then it is not told.
+  std::function<std::size_t()> bytes = {};
+  /// Puts what was seen longer ago into the file; it is found as before. May be empty.
+  std::function<void(ColdFile& file)> set_aside = {};
 
   explicit operator bool() const { return static_cast<bool>(search); }
 };

@@ -52,9 +52,9 @@ TEST(VoxelMap, PointsMoveWithTheViewThatBroughtThem) {
   const auto after = map.snapshot();
   EXPECT_EQ(after->point_count, 3U);
   ASSERT_EQ(after->tiles.size(), 3U);
-  EXPECT_FLOAT_EQ(after->tiles[0]->points.at(0).x_m, 1.0F);
-  EXPECT_FLOAT_EQ(after->tiles[1]->points.at(0).x_m, 21.0F);
-  EXPECT_FLOAT_EQ(after->tiles[1]->points.at(0).intensity, 7.0F);
+  EXPECT_FLOAT_EQ(after->tiles[0]->points[0].x_m, 1.0F);
+  EXPECT_FLOAT_EQ(after->tiles[1]->points[0].x_m, 21.0F);
+  EXPECT_FLOAT_EQ(after->tiles[1]->points[0].intensity, 7.0F);
   EXPECT_EQ(before->tiles[0]->points.size(), 2U);  // what was published stays as it was
   EXPECT_EQ(after->moved_revision, after->revision);
   // Where a point went, there is no room for another one.

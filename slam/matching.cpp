@@ -18,8 +18,8 @@ double match_score(int hamming_distance) {
   return std::clamp(1.0 - static_cast<double>(hamming_distance) / 80.0, 0.05, 1.0);
 }
 
-const std::vector<Match>& Matcher::match(const std::vector<Descriptor>& reference,
-                                         const std::vector<Descriptor>& current) {
+const std::vector<Match>& Matcher::match(std::span<const Descriptor> reference,
+                                         std::span<const Descriptor> current) {
   nearest_.find(reference, current);
   const auto& [partner, distance] = nearest_.of_current();
   matches_.clear();

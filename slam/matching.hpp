@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "slam/features.hpp"
@@ -33,8 +34,8 @@ struct MatchOptions {
 class Matcher {
  public:
   explicit Matcher(MatchOptions options) : options_(options) {}
-  const std::vector<Match>& match(const std::vector<Descriptor>& reference,
-                                  const std::vector<Descriptor>& current);
+  const std::vector<Match>& match(std::span<const Descriptor> reference,
+                                  std::span<const Descriptor> current);
 
  private:
   MatchOptions options_;

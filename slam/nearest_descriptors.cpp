@@ -24,8 +24,8 @@ bool have_popcnt() { return true; }
 
 using Nearest = NearestDescriptors::Nearest;
 
-[[gnu::always_inline]] inline void find_one_by_one(const std::vector<Descriptor>& reference,
-                                                   const std::vector<Descriptor>& current,
+[[gnu::always_inline]] inline void find_one_by_one(std::span<const Descriptor> reference,
+                                                   std::span<const Descriptor> current,
                                                    Nearest& of_reference, Nearest& of_current) {
   for (std::size_t c = 0; c < current.size(); ++c) {
     for (std::size_t r = 0; r < reference.size(); ++r) {
@@ -45,15 +45,14 @@ using Nearest = NearestDescriptors::Nearest;
   }
 }
 
-GLINT_POPCNT void find_by_popcnt(const std::vector<Descriptor>& reference,
-                                 const std::vector<Descriptor>& current, Nearest& of_reference,
+GLINT_POPCNT void find_by_popcnt(std::span<const Descriptor> reference,
+                                 std::span<const Descriptor> current, Nearest& of_reference,
                                  Nearest& of_current) {
   find_one_by_one(reference, current, of_reference, of_current);
 }
 
-void find_by_any_means(const std::vector<Descriptor>& reference,
-                       const std::vector<Descriptor>& current, Nearest& of_reference,
-                       Nearest& of_current) {
+void find_by_any_means(std::span<const Descriptor> reference, std::span<const Descriptor> current,
+                       Nearest& of_reference, Nearest& of_current) {
   find_one_by_one(reference, current, of_reference, of_current);
 }
 
@@ -70,8 +69,8 @@ std::vector<NearestPath> nearest_paths() {
   return paths;
 }
 
-void NearestDescriptors::find(const std::vector<Descriptor>& reference,
-                              const std::vector<Descriptor>& current) {
+void NearestDescriptors::find(std::span<const Descriptor> reference,
+                              std::span<const Descriptor> current) {
   of_reference_.partner.assign(reference.size(), -1);
   of_reference_.distance.assign(reference.size(), kernel::kFarthest);
   of_current_.partner.assign(current.size(), -1);
@@ -101,7 +100,7 @@ void NearestDescriptors::find(const std::vector<Descriptor>& reference,
 }
 
 // See NearestTask. What a last block lacks stays as it was and is not looked at.
-void NearestDescriptors::slice(const std::vector<Descriptor>& reference, std::size_t lanes) {
+void NearestDescriptors::slice(std::span<const Descriptor> reference, std::size_t lanes) {
   const std::size_t blocks = (reference.size() + lanes - 1) / lanes;
   constexpr std::size_t kLine = sizeof(Line);
   slices_.resize((blocks * lanes * kernel::kDescriptorBytes + kLine - 1) / kLine);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "slam/features.hpp"
@@ -28,7 +29,7 @@ class NearestDescriptors {
   NearestDescriptors() : NearestDescriptors(nearest_paths().back()) {}
   explicit NearestDescriptors(NearestPath path) : path_(path) {}
 
-  void find(const std::vector<Descriptor>& reference, const std::vector<Descriptor>& current);
+  void find(std::span<const Descriptor> reference, std::span<const Descriptor> current);
   [[nodiscard]] const Nearest& of_reference() const { return of_reference_; }
   [[nodiscard]] const Nearest& of_current() const { return of_current_; }
 
@@ -37,7 +38,7 @@ class NearestDescriptors {
     std::uint8_t bytes[64];
   };
 
-  void slice(const std::vector<Descriptor>& reference, std::size_t lanes);
+  void slice(std::span<const Descriptor> reference, std::size_t lanes);
 
   NearestPath path_;
   Nearest of_reference_;

@@ -237,6 +237,7 @@ void run(const ReplayCommand& command) {
   }
   ReplayOptions options;
   options.slam = config.slam;
+  options.slam.map_memory_mb = config.map.memory_mb;
   options.loops = slam::loops_by_appearance(config.slam);
   options.R_base_sensor = config.mount.T_base_sensor.rotation;
   options.session_file = command.out / "session.glint";

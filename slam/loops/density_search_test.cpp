@@ -209,7 +209,8 @@ TEST(DensitySearch, AsksNoMoreMapsHoweverLongItStays) {
   DensitySearch search;
   std::vector<Place> places(1000, make_place(hall.look(hall_pose(0.0, 0.0, 0.0), 0)));
   // Most are left empty, for speed.
-  for (std::size_t i = 0; i + 25 < places.size(); ++i) places[i].points_m.resize(1);
+  for (std::size_t i = 0; i + 25 < places.size(); ++i)
+    places[i].points_m = std::vector{places[i].points_m[0]};
   search.keep(places);
   search.propose(places, 900);
   EXPECT_EQ(search.asked(), DensitySearch::kMostAsked);

@@ -38,6 +38,10 @@ constexpr std::size_t kBeside = 2;
 constexpr double kLoopEvery_m = 1.0;
 // What waits longer to be borne out is given up.
 constexpr double kLongestWait_m = 15.0;
+// What a place takes in the indices, about: its words, and a fourth of the map around it.
+constexpr std::size_t kIndexBytes = 10'000;
+// The last places are looked at with each keyframe: they stay in memory.
+constexpr std::size_t kWarm = 50;
 // What odometry may have erred by.
 constexpr double kMostDrift_m = 15.0;
 constexpr double kMostDriftShare = 0.05;
@@ -63,6 +67,16 @@ void LoopDetector::remember(const Keyframe& keyframe) {
   last_bag_ = vocabulary_->bag_of(places_.back().descriptors);
   index_.add(last_bag_);
   if (density_) density_->keep(places_);
+}
+
+std::size_t LoopDetector::bytes() const {
+  std::size_t bytes = places_.size() * kIndexBytes;
+  for (const Place& place : places_) bytes += bytes_of(place);
+  return bytes;
+}
+
+void LoopDetector::set_aside(ColdFile& file) {
+  for (; cold_ + kWarm < places_.size(); ++cold_) glint::slam::set_aside(places_[cold_], file);
 }
 
 std::vector<LoopEdge> LoopDetector::add(const Keyframe& keyframe) {

@@ -38,6 +38,10 @@ class LoopDetector {
   std::vector<LoopEdge> add(const Keyframe& keyframe);
   /// The same for a keyframe of a session before, which is to be found but not looked for.
   void remember(const Keyframe& keyframe);
+  /// Memory taken by what is known, about, bytes.
+  [[nodiscard]] std::size_t bytes() const;
+  /// Puts what older keyframes show into the file; it is found as before.
+  void set_aside(ColdFile& file);
   /// What the last add() looked at closely, whether it became a loop or not.
   [[nodiscard]] const std::vector<LoopCandidate>& candidates() const { return candidates_; }
 
@@ -86,6 +90,7 @@ class LoopDetector {
   LoopVerifier verifier_;
   std::optional<DensitySearch> density_;
   std::vector<Place> places_;  ///< The current one is the last.
+  std::size_t cold_ = 0;       ///< Places before this one were set aside.
   SensorTime last_stamp_;
   BagOfWords last_bag_;
   std::size_t aged_ = 0;  ///< Places before this one are old enough to be found again.

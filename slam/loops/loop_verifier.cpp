@@ -23,8 +23,7 @@ SurfaceMap surfaces_of(const Place& base, std::span<const Place> around) {
 }
 
 // Every n-th, so that at most so many are left.
-std::vector<Eigen::Vector3f> some_of(const std::vector<Eigen::Vector3f>& points_m,
-                                     std::size_t most) {
+std::vector<Eigen::Vector3f> some_of(std::span<const Eigen::Vector3f> points_m, std::size_t most) {
   std::vector<Eigen::Vector3f> some_m;
   const std::size_t step = std::max<std::size_t>(1, (points_m.size() + most - 1) / most);
   for (std::size_t i = 0; i < points_m.size(); i += step) some_m.push_back(points_m[i]);

@@ -21,6 +21,8 @@ LoopSource loops_by_appearance(const SlamConfig& config) {
     return search;
   };
   source.remember = [detector](const Keyframe& keyframe) { detector->remember(keyframe); };
+  source.bytes = [detector] { return detector->bytes(); };
+  source.set_aside = [detector](ColdFile& file) { detector->set_aside(file); };
   return source;
 }
 

@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 #include <unordered_set>
+#include <utility>
+#include <vector>
 
 #include "slam/loops/voxel_key.hpp"
 
@@ -39,22 +42,50 @@ Place make_place(const Keyframe& keyframe, const PlaceOptions& options) {
   place.id = keyframe.id;
   place.segment = keyframe.estimate.segment;
   place.T_odom_sensor = keyframe.estimate.T_odom_sensor;
+  std::vector<Descriptor> descriptors;
+  std::vector<Eigen::Vector3f> keypoints_m;
   for (const std::size_t i : strongest(keyframe.features, options.most_keypoints)) {
-    place.descriptors.push_back(keyframe.features.descriptors[i]);
-    place.keypoints_m.push_back(keyframe.features.points_m[i].cast<float>());
+    descriptors.push_back(keyframe.features.descriptors[i]);
+    keypoints_m.push_back(keyframe.features.points_m[i].cast<float>());
   }
-  place.points_m.reserve(keyframe.points.size());
+  std::vector<Eigen::Vector3f> points_m;
+  points_m.reserve(keyframe.points.size());
   for (const MapPoint& point : keyframe.points) {
-    place.points_m.emplace_back(point.x_m, point.y_m, point.z_m);
+    points_m.emplace_back(point.x_m, point.y_m, point.z_m);
   }
   place.voxel_m = options.finest_voxel_m;
-  thin(place.points_m, place.voxel_m);
-  while (place.points_m.size() > options.most_points) {
+  thin(points_m, place.voxel_m);
+  while (points_m.size() > options.most_points) {
     place.voxel_m *= 1.2F;
-    thin(place.points_m, place.voxel_m);
+    thin(points_m, place.voxel_m);
   }
-  place.points_m.shrink_to_fit();
+  points_m.shrink_to_fit();
+  place.descriptors = std::move(descriptors);
+  place.keypoints_m = std::move(keypoints_m);
+  place.points_m = std::move(points_m);
   return place;
+}
+
+std::size_t bytes_of(const Place& place) {
+  std::size_t bytes = sizeof(Place);
+  const auto add = [&](const auto& values) {
+    if (!values.is_cold()) bytes += values.size() * sizeof(values[0]);
+  };
+  add(place.descriptors);
+  add(place.keypoints_m);
+  add(place.points_m);
+  return bytes;
+}
+
+void set_aside(Place& place, ColdFile& file) {
+  const auto put = [&](auto& values) {
+    if (values.is_cold() || values.empty()) return;
+    const auto bytes = file.put(std::as_bytes(std::span(values.data(), values.size())));
+    if (bytes) values = {bytes, values.size()};
+  };
+  put(place.descriptors);
+  put(place.keypoints_m);
+  put(place.points_m);
 }
 
 std::vector<Eigen::Vector3f> points_of(std::span<const Place> places, const Pose& T_frame_odom) {

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "driver/core/pose.hpp"
+#include "slam/cold_array.hpp"
+#include "slam/cold_file.hpp"
 #include "slam/features.hpp"
 #include "slam/keyframe.hpp"
 
@@ -21,10 +23,10 @@ struct Place {
   double path_m = 0.0;  ///< Way travelled until then.
   Pose T_odom_sensor;
   /// Keypoints, the strongest first; entry i of each belongs together. Sensor frame, m.
-  std::vector<Descriptor> descriptors;
-  std::vector<Eigen::Vector3f> keypoints_m;
+  ColdArray<Descriptor> descriptors;
+  ColdArray<Eigen::Vector3f> keypoints_m;
   /// Points all around, one in each cube of edge voxel_m. Sensor frame, m.
-  std::vector<Eigen::Vector3f> points_m;
+  ColdArray<Eigen::Vector3f> points_m;
   float voxel_m = 0.0F;
 };
 
@@ -36,6 +38,11 @@ struct PlaceOptions {
 
 /// Keeps the strongest keypoints and thinned points of a keyframe; leaves time and path at zero.
 Place make_place(const Keyframe& keyframe, const PlaceOptions& options = {});
+
+/// What a place takes in memory, about, bytes.
+std::size_t bytes_of(const Place& place);
+/// Puts what it shows into the file, unless that takes no more; it is read as before.
+void set_aside(Place& place, ColdFile& file);
 
 /// The points of `places`, all of one segment, in a frame that the odometry's is known in; m.
 std::vector<Eigen::Vector3f> points_of(std::span<const Place> places, const Pose& T_frame_odom);

@@ -25,27 +25,59 @@ struct Ranges {
   float most_m = 0.0F;
 };
 
-std::size_t direction_of(const Eigen::Vector3f& point_m, float range_m) {
+struct Direction {
+  int row = 0;
+  int column = 0;
+};
+
+Direction direction_of(const Eigen::Vector3f& point_m, float range_m) {
   const double azimuth = std::atan2(point_m.y(), point_m.x()) + M_PI;
   const double elevation = std::asin(std::clamp(point_m.z() / range_m, -1.0F, 1.0F)) + M_PI_2;
-  const int column = std::min(static_cast<int>(azimuth * kCellsPerRad), kAzimuths - 1);
-  const int row = std::min(static_cast<int>(elevation * kCellsPerRad), kElevations - 1);
-  return static_cast<std::size_t>(row * kAzimuths + column);
+  return {std::min(static_cast<int>(elevation * kCellsPerRad), kElevations - 1),
+          std::min(static_cast<int>(azimuth * kCellsPerRad), kAzimuths - 1)};
 }
+
+/// How near and how far a keyframe saw something, by direction.
+class RangeView {
+ public:
+  explicit RangeView(std::span<const MapPoint> points) {
+    for (const MapPoint& p : points) {
+      const Eigen::Vector3f point_m(p.x_m, p.y_m, p.z_m);
+      const float range_m = point_m.norm();
+      if (range_m > 0.0F) widen(direction_of(point_m, range_m), range_m);
+    }
+  }
+
+  [[nodiscard]] bool shows(const Eigen::Vector3f& point_m, float range_m) const {
+    const Direction to = direction_of(point_m, range_m);
+    const Ranges& seen = cells_[index_of(to.row, to.column)];
+    const float slack_m = kSlack_m + kSlackShare * range_m;
+    return range_m > seen.least_m - slack_m && range_m < seen.most_m + slack_m;
+  }
+
+ private:
+  static std::size_t index_of(int row, int column) {
+    return static_cast<std::size_t>(row * kAzimuths + (column + kAzimuths) % kAzimuths);
+  }
+  // From half a metre beside, and between two beams, a surface is seen in the next cell.
+  void widen(const Direction& at, float range_m) {
+    for (int row = std::max(at.row - 1, 0); row <= std::min(at.row + 1, kElevations - 1); ++row) {
+      for (int column = at.column - 1; column <= at.column + 1; ++column) {
+        Ranges& cell = cells_[index_of(row, column)];
+        cell.least_m = std::min(cell.least_m, range_m);
+        cell.most_m = std::max(cell.most_m, range_m);
+      }
+    }
+  }
+
+  std::array<Ranges, static_cast<std::size_t>(kAzimuths) * kElevations> cells_{};
+};
 
 }  // namespace
 
 bool shows_the_same(std::span<const MapPoint> kept, std::span<const MapPoint> other,
                     const Pose& T_kept_other) {
-  std::array<Ranges, static_cast<std::size_t>(kAzimuths) * kElevations> seen{};
-  for (const MapPoint& p : kept) {
-    const Eigen::Vector3f point_m(p.x_m, p.y_m, p.z_m);
-    const float range_m = point_m.norm();
-    if (range_m <= 0.0F) continue;
-    Ranges& cell = seen[direction_of(point_m, range_m)];
-    cell.least_m = std::min(cell.least_m, range_m);
-    cell.most_m = std::max(cell.most_m, range_m);
-  }
+  const RangeView view(kept);
   const Eigen::Matrix3f rotation = T_kept_other.rotation.toRotationMatrix().cast<float>();
   const Eigen::Vector3f translation_m = T_kept_other.translation_m.cast<float>();
   std::size_t asked = 0;
@@ -54,10 +86,8 @@ bool shows_the_same(std::span<const MapPoint> kept, std::span<const MapPoint> ot
     const Eigen::Vector3f point_m = rotation * Eigen::Vector3f(p.x_m, p.y_m, p.z_m) + translation_m;
     const float range_m = point_m.norm();
     if (range_m <= 0.0F) continue;
-    const Ranges& cell = seen[direction_of(point_m, range_m)];
-    const float slack_m = kSlack_m + kSlackShare * range_m;
     ++asked;
-    found += range_m > cell.least_m - slack_m && range_m < cell.most_m + slack_m ? 1 : 0;
+    found += view.shows(point_m, range_m) ? 1 : 0;
   }
   return static_cast<double>(found) >= kLeastShare * static_cast<double>(asked);
 }

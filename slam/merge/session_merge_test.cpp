@@ -27,15 +27,22 @@ class SessionMerge : public testing::Test {
   /// A walk from `from_m` to `to_m`, `y_m` beside the middle; truths in order of its keyframes.
   std::vector<Pose> walk(const std::string& name, double from_m, double to_m, double y_m,
                          int gallery = 0) {
-    config_.map_voxel_m = 0.2;
-    Backend backend(config_, file(name));
+    return record(name, way(from_m, to_m, y_m, gallery));
+  }
+  static std::vector<Pose> way(double from_m, double to_m, double y_m, int gallery) {
     const double step_m = to_m > from_m ? 0.5 : -0.5;
     std::vector<Pose> truths;
     for (double x_m = from_m; (to_m - x_m) * step_m > 0.0; x_m += step_m) {
       truths.push_back(gallery_pose(x_m, y_m, to_m > from_m ? 0.0 : M_PI, gallery));
-      const std::uint64_t id = truths.size() - 1;
-      Keyframe keyframe = gallery_.look(truths.back(), id, 0.5 * static_cast<double>(id));
-      keyframe.estimate.T_odom_sensor = truths.front().inverse() * truths.back();
+    }
+    return truths;
+  }
+  std::vector<Pose> record(const std::string& name, const std::vector<Pose>& truths) {
+    config_.map_voxel_m = 0.2;
+    Backend backend(config_, file(name));
+    for (std::uint64_t id = 0; id < truths.size(); ++id) {
+      Keyframe keyframe = gallery_.look(truths[id], id, 0.5 * static_cast<double>(id));
+      keyframe.estimate.T_odom_sensor = truths.front().inverse() * truths[id];
       keyframe.estimate.sequence = 5 * id;
       keyframe.estimate.segment = 0;
       backend.process(keyframe);
@@ -116,10 +123,14 @@ TEST_F(SessionMerge, ASecondWalkOfTheSameWayAddsPosesOnly) {
 }
 
 TEST_F(SessionMerge, ASessionMayBeTiedByOneThatIsNamedAfterIt) {
-  const auto a = walk("a", 1.0, 11.0, 0.0);
-  const auto c = walk("c", 18.0, 29.0, 0.0);
-  const auto b = walk("b", 4.0, 26.0, 0.1);
+  const auto a = walk("a", 2.0, 18.0, 0.0);
+  const auto c = walk("c", 2.0, 18.0, 0.0, 1);
+  std::vector<Pose> both = way(3.0, 14.0, 0.1, 0);
+  const std::vector<Pose> there = way(3.0, 14.0, 0.1, 1);
+  both.insert(both.end(), there.begin(), there.end());
+  const auto b = record("b", both);
   EXPECT_EQ(merge({"a", "c", "b"}).sessions, 3U);
+  // As they were joined.
   EXPECT_LT(worst_m({a, b, c}), 0.08);
 }
 

@@ -172,7 +172,7 @@ TEST_F(SessionReaderTest, TheMapIsMadeOfTheKeyframesWhereTheyAreNow) {
   const auto map = session_map(SessionReader(file_));
   EXPECT_EQ(map->keyframe_count, 1U);
   ASSERT_EQ(map->point_count, 2U);
-  EXPECT_NEAR(map->tiles.at(0)->points.at(0).z_m, 30.1, 1e-4);
+  EXPECT_NEAR(map->tiles.at(0)->points[0].z_m, 30.1, 1e-4);
 }
 
 // What version 1 wrote, with its points of seven bytes.
