@@ -57,7 +57,8 @@ class RangeView {
 
  private:
   static std::size_t index_of(int row, int column) {
-    return static_cast<std::size_t>(row * kAzimuths + (column + kAzimuths) % kAzimuths);
+    const int index = row * kAzimuths + (column + kAzimuths) % kAzimuths;
+    return static_cast<std::size_t>(index);
   }
   // From half a metre beside, and between two beams, a surface is seen in the next cell.
   void widen(const Direction& at, float range_m) {

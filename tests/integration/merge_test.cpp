@@ -29,9 +29,7 @@ class MergeCommand : public ::testing::Test {
  protected:
   void make_session(const std::string& name, std::vector<std::string> options) const {
     options.insert(options.begin(), "simulate");
-    for (const char* option : {"--columns", "512", "--beams", "32", "--out"}) {
-      options.emplace_back(option);
-    }
+    options.emplace_back("--out");
     options.push_back(dir_ / name);
     const CommandResult simulated = run_glint(options);
     ASSERT_EQ(simulated.exit_code, 0) << simulated.out;
