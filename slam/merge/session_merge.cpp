@@ -25,6 +25,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kKeyframesACommit = 100;
+
 /// A session that waits to be joined.
 struct Unjoined {
   fs::path file;
@@ -96,7 +98,8 @@ class PartWriter {
       store_.set_sensor(sensors_[next_].info);
     }
     store_.add(keyframe, T_map_sensor);
-    store_.commit_if_due();
+    // Sooner than a store that waits for its time refuses more.
+    if (++added_ % kKeyframesACommit == 0) store_.commit();
   }
 
  private:
@@ -104,6 +107,7 @@ class PartWriter {
   const std::uint64_t first_keyframe_;
   SessionStore& store_;
   std::size_t next_ = 0;
+  std::size_t added_ = 0;
 };
 
 void write_keyframes(const MapJoin& map, SessionStore& store, MergeSummary& summary) {

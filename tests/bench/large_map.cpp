@@ -73,7 +73,7 @@ void make(const std::string& from, int copies, const std::string& to) {
       first = false;
       last = stored.T_map_sensor;
       store.add(stored.keyframe, beside * stored.T_map_sensor);
-      store.commit_if_due();
+      if (id % 100 == 0 && !store.commit()) throw std::runtime_error(std::string(store.error()));
     });
   }
   fmt::print("{} keyframes, {:.1f} km\n", id, 1e-3 * way_m);
