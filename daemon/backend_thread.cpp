@@ -48,8 +48,7 @@ std::unique_ptr<slam::Backend> BackendThread::make_backend() const {
   const bool grows = plan_.use == slam::MapUse::kExtend;
   auto backend = std::make_unique<slam::Backend>(
       config_, plan_.file, stage_clock(), grows && make_loops_ ? make_loops_() : slam::LoopSource{},
-      plan_.earlier, plan_.use);
-  backend->call_meanwhile([this] { heartbeat_.beat(); });
+      plan_.earlier, plan_.use, [this] { heartbeat_.beat(); });
   if (config_.loops) backend->search_new_segments();
   return backend;
 }

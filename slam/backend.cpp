@@ -52,11 +52,13 @@ std::unique_ptr<SessionStore> make_store(const std::filesystem::path& file,
 }  // namespace
 
 Backend::Backend(const SlamConfig& config, const std::filesystem::path& session_file, Clock clock,
-                 LoopSource loops, const std::filesystem::path& earlier, MapUse use)
+                 LoopSource loops, const std::filesystem::path& earlier, MapUse use,
+                 std::function<void()> alive)
     : config_(config),
       session_file_(session_file),
       clock_(clock),
       loops_(config.loops ? std::move(loops) : LoopSource{}),
+      alive_(std::move(alive)),
       graph_({config.pgo_gravity, config.loop_consistency}),
       store_(earlier.empty() ? make_store(session_file, config, clock) : nullptr),
       snapshot_(std::make_shared<const MapSnapshot>()) {

@@ -51,9 +51,11 @@ class Backend {
   /// session, or is itself gone on with if it is the same; until then neither is written.
   /// @throws InputError where it cannot be read.
   /// `use`: with kLocalize neither the map nor any file is ever changed, see MapLocalizer.
+  /// `alive`: called now and then while a map is read, which takes long; may be empty.
   explicit Backend(const SlamConfig& config, const std::filesystem::path& session_file = {},
                    Clock clock = {}, LoopSource loops = {},
-                   const std::filesystem::path& earlier = {}, MapUse use = MapUse::kExtend);
+                   const std::filesystem::path& earlier = {}, MapUse use = MapUse::kExtend,
+                   std::function<void()> alive = {});
   ~Backend();
   Backend(const Backend&) = delete;
   Backend& operator=(const Backend&) = delete;
@@ -71,8 +73,6 @@ class Backend {
   /// From here on that is done by itself when tracking restarts in a new segment. (A map that is
   /// only read always does.)
   void search_new_segments() { searches_new_segments_ = true; }
-  /// To be called now and then while something takes long.
-  void call_meanwhile(std::function<void()> alive) { alive_ = std::move(alive); }
   [[nodiscard]] MapSearch search() const;
   /// Whether the last call gave up the guess that the search began with.
   [[nodiscard]] bool guess_dropped() const;
@@ -155,6 +155,7 @@ class Backend {
   const std::filesystem::path session_file_;
   const Clock clock_;
   const LoopSource loops_;
+  const std::function<void()> alive_;  ///< May be empty.
   PoseGraph graph_;
   MovingPoints moving_;
   std::optional<VoxelMap> map_;     ///< Made with the first keyframe, whose ranges set the voxels.
@@ -171,7 +172,6 @@ class Backend {
   std::uint32_t first_segment_ = 0;
   std::vector<std::uint32_t> set_apart_;  ///< Segments that are not new ones of odometry.
   bool searches_new_segments_ = false;
-  std::function<void()> alive_;  ///< May be empty.
   MapCorrection correction_;
   std::shared_ptr<const MapSnapshot> snapshot_;
   std::vector<LoopReport> loop_reports_;

@@ -77,6 +77,7 @@ void Backend::restore(const SessionReader& session, Relocalizer& relocalizer) {
   const double voxel_m = session_voxel_m(session);
   map_.emplace(voxel_m, static_cast<std::size_t>(config_.map_max_points));
   session.for_each_keyframe([&](SessionKeyframe&& stored) {
+    if (alive_) alive_();
     const Keyframe& keyframe = stored.keyframe;
     graph_.add_at(keyframe, stored.T_map_sensor);
     map_->insert(stored.T_map_sensor,
