@@ -44,16 +44,20 @@ TEST_P(NearestPaths, OppositesAndNothingHaveNoNearest) {
   const Descriptor zeros{};
   const Descriptor ones{~0ULL, ~0ULL, ~0ULL, ~0ULL};
   const Descriptor nearly{~0ULL, ~0ULL, ~0ULL, ~3ULL};
-  nearest.find({zeros}, {ones});
+  const auto find = [&](const std::vector<Descriptor>& reference,
+                        const std::vector<Descriptor>& current) {
+    nearest.find(reference, current);
+  };
+  find({zeros}, {ones});
   EXPECT_EQ(nearest.of_current().partner, (std::vector<std::int32_t>{-1}));
   EXPECT_EQ(nearest.of_reference().partner, (std::vector<std::int32_t>{-1}));
-  nearest.find({zeros}, {ones, nearly});
+  find({zeros}, {ones, nearly});
   EXPECT_EQ(nearest.of_current().partner, (std::vector<std::int32_t>{-1, 0}));
   EXPECT_EQ(nearest.of_reference().partner, (std::vector<std::int32_t>{1}));
   EXPECT_EQ(nearest.of_reference().distance, (std::vector<std::uint8_t>{254}));
-  nearest.find({}, {ones});
+  find({}, {ones});
   EXPECT_EQ(nearest.of_current().partner, (std::vector<std::int32_t>{-1}));
-  nearest.find({ones}, {});
+  find({ones}, {});
   EXPECT_EQ(nearest.of_reference().partner, (std::vector<std::int32_t>{-1}));
 }
 

@@ -31,7 +31,7 @@ constexpr double kLeastOverlap = 0.5;
 constexpr double kMostRms_m = 0.09;
 constexpr double kMostRmsShare = 0.25;  // Of the points' spacing.
 
-std::vector<Eigen::Vector3f> sampled(const std::vector<Eigen::Vector3f>& points_m) {
+std::vector<Eigen::Vector3f> sampled(std::span<const Eigen::Vector3f> points_m) {
   std::vector<Eigen::Vector3f> out_m;
   const std::size_t step =
       std::max<std::size_t>(1, (points_m.size() + kScanPoints - 1) / kScanPoints);

@@ -84,8 +84,8 @@ TEST(FeatureCodec, PlacesAreMadeOfThemAsOfTheOriginals) {
   restored.features = *back;
   const Place was = make_place(keyframe);
   const Place is = make_place(restored);
-  EXPECT_EQ(is.descriptors, was.descriptors);
-  EXPECT_EQ(is.keypoints_m, was.keypoints_m);
+  EXPECT_TRUE(std::ranges::equal(is.descriptors, was.descriptors));
+  EXPECT_TRUE(std::ranges::equal(is.keypoints_m, was.keypoints_m));
 }
 
 TEST(FeatureCodec, KeypointsComeBackAsTheyWere) {
