@@ -2,6 +2,7 @@
 // Copyright 2026 The Glint Authors
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
