@@ -20,6 +20,8 @@ slam::SlamConfig slam_config(const Config& config) {
 }
 
 constexpr std::chrono::milliseconds kKeyframeWait{100};
+// While a map is still being read; other threads want the processor, too.
+constexpr std::chrono::milliseconds kRestoringWait{10};
 
 // What has happened to the map, or to the sensor in one that is only read.
 const char* action_between(const slam::MapCorrection& before, const slam::MapCorrection& now,
@@ -59,9 +61,14 @@ void BackendThread::run() {
   PopResult result = PopResult::kTimeout;
   while (result != PopResult::kClosed) {
     heartbeat_.beat();
-    result = crossings_.keyframes.pop(keyframe, kKeyframeWait);
+    const bool restoring = backend_->restored() < 1.0;
+    result = crossings_.keyframes.pop(keyframe, restoring ? kRestoringWait : kKeyframeWait);
     look_at_sensor();
-    if (result == PopResult::kItem) process(keyframe);
+    if (result == PopResult::kItem) {
+      process(keyframe);
+    } else if (restoring) {
+      restore_more();
+    }
     keep_session();
     crossings_.session_commit.serve([this] { return commit_session(); });
     if (const auto change = crossings_.map_change.take()) change_map(*change);
@@ -95,6 +102,11 @@ void BackendThread::process(const slam::Keyframe& keyframe) {
   if (backend_->guess_dropped()) post_map_event("guess_dropped");
   if (backend_->search() == slam::MapSearch::kNone) told_not_found_ = false;
   if (backend_->searching_s() > plan_.search_s) take_end_of_search();
+}
+
+void BackendThread::restore_more() {
+  const slam::MapCorrection before = backend_->correction();
+  if (backend_->restore_more()) tell(before);
 }
 
 void BackendThread::search_anew(const PlaceSearchRequest& request) {
@@ -230,6 +242,7 @@ void BackendThread::publish() {
   state->pgo = pgo_duration_;
   state->loops_accepted = backend_->loops_accepted();
   state->loops_rejected = backend_->loops_rejected();
+  state->restored = backend_->restored();
   state->only_read = plan_.use == slam::MapUse::kLocalize;
   state->session_file = backend_->session_file().string();
   state->store_failures = backend_->store_failures();

@@ -29,6 +29,7 @@ class BackendThread {
  private:
   void look_at_sensor();
   void process(const slam::Keyframe& keyframe);
+  void restore_more();
   void keep_session();
   [[nodiscard]] std::unique_ptr<slam::Backend> make_backend() const;
   void change_map(const MapChange& change);

@@ -62,10 +62,10 @@ Backend::Backend(const SlamConfig& config, const std::filesystem::path& session_
       graph_({config.pgo_gravity, config.loop_consistency}),
       store_(earlier.empty() ? make_store(session_file, config, clock) : nullptr),
       snapshot_(std::make_shared<const MapSnapshot>()) {
+  if (!session_file.empty() && loops_) vocabulary_ = open_vocabulary(config.vocabulary);
   // Words of one vocabulary say nothing in another.
-  if (store_ && loops_) {
-    store_->set_meta("vocabulary_hash",
-                     fmt::format("{:016x}", open_vocabulary(config.vocabulary)->hash()));
+  if (store_ && vocabulary_) {
+    store_->set_meta("vocabulary_hash", fmt::format("{:016x}", vocabulary_->hash()));
   }
   if (!earlier.empty()) load(earlier, use);
 }
@@ -82,6 +82,7 @@ void Backend::process(const Keyframe& keyframe) {
   const StageTimer timer(clock_, times_, Stage::kBackend);
   loop_reports_.clear();
   stamp_ = keyframe.estimate.stamp;
+  if (restoring_) restore_some(kRestoredWithEach);
   if (searches_new_segments_ && begins_segment(keyframe)) search_anew();
   if (localizer_) {
     localizer_->process(keyframe, correction_);
@@ -97,22 +98,26 @@ void Backend::process(const Keyframe& keyframe) {
 }
 
 // Into graph, map and session.
-void Backend::take(const Keyframe& keyframe) {
+void Backend::take(Keyframe keyframe) {
   {
     const StageTimer pgo(clock_, times_, Stage::kPgo);
     graph_.add(keyframe);
   }
   const Pose T_map_sensor = graph_.poses().back();
   if (!map_) make_map(keyframe);
-  const auto& points = config_.moving_objects ? moving_.standing(keyframe) : keyframe.points;
+  leave_out_moving(keyframe);
   if (memory_.full) {
-    map_->skip_view(points.size());
+    map_->skip_view(keyframe.points.size());
   } else {
-    map_->insert(T_map_sensor, points);
+    map_->insert(T_map_sensor, keyframe.points);
   }
-  if (store_) store_->add(keyframe, T_map_sensor);
+  if (store_) store_->add(keyframe, T_map_sensor, words_of(keyframe));
   if (loops_ && !memory_.full) look_for_loops(keyframe);
   if (graph_.tilted()) settle();
+}
+
+void Backend::leave_out_moving(Keyframe& keyframe) {
+  if (config_.moving_objects) keyframe.points = moving_.standing(keyframe);
 }
 
 void Backend::finish() {
@@ -120,6 +125,10 @@ void Backend::finish() {
   const StageTimer timer(clock_, times_, Stage::kBackend);
   loop_reports_.clear();
   go_on_unfound();
+  if (search_ && search_->found) {
+    while (restore_more()) {
+    }
+  }
   if (loops_waiting_) {
     settle();
     store_changes();
@@ -140,7 +149,7 @@ void Backend::make_map(const Keyframe& first) {
   if (!store_) return;
   store_->set_meta("map_voxel_m", fmt::format("{}", voxel_m));
   store_->set_meta("map_max_points", fmt::format("{}", config_.map_max_points));
-  store_->set_meta("moving_objects", config_.moving_objects ? "left out" : "kept");
+  store_->set_meta("moving_objects", config_.moving_objects ? "removed" : "kept");
 }
 
 // A correction that no new loop asks for.

@@ -48,7 +48,9 @@ class Backend {
   /// `earlier`: a session whose map is gone on with; empty for none. The sensor may be anywhere in
   /// it: the last 500 keyframes are held back until their place is found, as correction().placed
   /// tells, and what follows is in the frame of that map. `session_file` then begins with that
-  /// session, or is itself gone on with if it is the same; until then neither is written.
+  /// session, or is itself gone on with if it is the same; until then neither is written. The place
+  /// can be found at once; the map of a large session comes back with the keyframes that follow and
+  /// by restore_more(), and until it is whole what was held back waits on.
   /// @throws InputError where it cannot be read.
   /// `use`: with kLocalize neither the map nor any file is ever changed, see MapLocalizer.
   /// `alive`: called now and then while a map is read, which takes long; may be empty.
@@ -91,6 +93,11 @@ class Backend {
   void finish();
   /// To be called often while no keyframe comes: what the session holds reaches the disk in time.
   void keep_session();
+  /// The same: more of an earlier session's map is read, which takes some 20 ms. False when all of
+  /// it is there.
+  bool restore_more();
+  /// How much of it is there, 0 to 1.
+  [[nodiscard]] double restored() const;
   /// The session is on the disk when it returns. False when it could not be written; store_error()
   /// says why.
   [[nodiscard]] bool commit_session() { return !store_ || store_->commit(); }
@@ -118,12 +125,28 @@ class Backend {
   [[nodiscard]] std::uint64_t keyframes_not_stored() const;
 
  private:
+  /// Keyframes of an earlier session that are read at a time.
+  static constexpr std::size_t kRestoredWithEach = 10;
+
+  /// Where a scan was found.
+  struct Found {
+    Relocation relocation;
+    Pose T_odom_sensor;
+    std::uint32_t segment = 0;
+  };
   /// For the place of the sensor in a map that was there before.
   struct PlaceSearch {
     std::filesystem::path session;  ///< Empty: it is that of the map there is.
     Relocalizer relocalizer;
     std::vector<Keyframe> waiting;  ///< That are to be built from once it is found.
     std::optional<SensorTime> begin;
+    std::optional<Found> found;  ///< While the map is not whole.
+  };
+  /// An earlier session of which not all is in the map yet.
+  struct Restoring {
+    std::shared_ptr<const SessionReader> session;
+    std::uint64_t next = 0;  ///< The first keyframe that is not.
+    bool as_stored = false;  ///< Its points need no look for what moves.
   };
 
   void load(const std::filesystem::path& session, MapUse use);
@@ -132,11 +155,17 @@ class Backend {
   void set_apart(std::vector<Keyframe>& waiting);
   [[nodiscard]] std::uint32_t odometry_segment(std::uint32_t map_segment) const;
   [[nodiscard]] Keyframe renumbered(const Keyframe& keyframe) const;
-  void restore(const SessionReader& session, Relocalizer& relocalizer);
+  Relocalizer restore(const std::filesystem::path& file);
+  Relocalizer knowing_places(const std::shared_ptr<const SessionReader>& session,
+                             const std::function<void(const KeyframeOutline&)>& visit);
+  void restore_some(std::size_t keyframes);
+  [[nodiscard]] std::optional<BagOfWords> words_of(const Keyframe& keyframe) const;
   void search_place(const Keyframe& keyframe);
-  void settle_down(const Relocation& found, const Pose& T_odom_sensor);
+  void wait_for_map(const Keyframe& keyframe);
+  void settle_down();
   void continue_session(const std::filesystem::path& session);
-  void take(const Keyframe& keyframe);
+  void take(Keyframe keyframe);
+  void leave_out_moving(Keyframe& keyframe);
   void look_for_loops(const Keyframe& keyframe);
   void settle();
   void take_loops(std::span<const LoopEdge> edges);
@@ -155,7 +184,8 @@ class Backend {
   const std::filesystem::path session_file_;
   const Clock clock_;
   const LoopSource loops_;
-  const std::function<void()> alive_;  ///< May be empty.
+  const std::function<void()> alive_;             ///< May be empty.
+  std::shared_ptr<const Vocabulary> vocabulary_;  ///< Null where no words are kept.
   PoseGraph graph_;
   MovingPoints moving_;
   std::optional<VoxelMap> map_;     ///< Made with the first keyframe, whose ranges set the voxels.
@@ -165,6 +195,7 @@ class Backend {
   std::unique_ptr<SessionStore> store_;
   std::string no_session_because_;            ///< Why there is none after the place was found.
   std::shared_ptr<const SensorInfo> sensor_;  ///< For a session that is yet to be made.
+  std::optional<Restoring> restoring_;        ///< While the map is not whole.
   std::optional<PlaceSearch> search_;         ///< While the sensor's place is not known.
   std::optional<MapLocalizer> localizer_;     ///< Of a map that is only read.
   /// What makes the numbers of keyframes and segments those of the map.

@@ -10,7 +10,6 @@
 #include "slam/backend.hpp"
 #include "slam/loops/vocabulary.hpp"
 #include "slam/store/session_copy.hpp"
-#include "slam/store/session_map.hpp"
 
 namespace glint::slam {
 namespace {
@@ -18,9 +17,6 @@ namespace {
 // What the way between a scan and the keyframe before it may err by.
 constexpr double kBetween_m = 0.01;
 constexpr double kBetween_rad = 0.002;
-
-// Keyframes that are read between two looks at how much memory they take.
-constexpr std::uint64_t kBetweenLooksAtMemory = 100;
 
 // Keyframes that wait for their place to be known: some 200 MB of them. The oldest go first.
 constexpr std::size_t kMostWaiting = 500;
@@ -58,37 +54,17 @@ void Backend::begin_at_epoch(std::uint32_t epoch) {
 }
 
 void Backend::load(const std::filesystem::path& session, MapUse use) {
-  const SessionReader reader(session);
-  Relocalizer relocalizer(open_vocabulary(config_.vocabulary));
-  restore(reader, relocalizer);
+  Relocalizer relocalizer = restore(session);
   if (use == MapUse::kLocalize) {
     localizer_.emplace(std::move(relocalizer));
   } else {
-    search_.emplace(PlaceSearch{session, std::move(relocalizer), {}, {}});
+    search_.emplace(PlaceSearch{session, std::move(relocalizer), {}, {}, {}});
   }
   correction_.placed = false;
   correction_.confidence = 0.0;
   ++correction_.epoch;
   keep_within_memory();
   publish();
-}
-
-void Backend::restore(const SessionReader& session, Relocalizer& relocalizer) {
-  const double voxel_m = session_voxel_m(session);
-  map_.emplace(voxel_m, static_cast<std::size_t>(config_.map_max_points));
-  session.for_each_keyframe([&](SessionKeyframe&& stored) {
-    if (alive_) alive_();
-    const Keyframe& keyframe = stored.keyframe;
-    graph_.add_at(keyframe, stored.T_map_sensor);
-    map_->insert(stored.T_map_sensor,
-                 config_.moving_objects ? moving_.standing(keyframe) : keyframe.points);
-    if (loops_.remember) loops_.remember(keyframe);
-    relocalizer.remember(keyframe, stored.T_map_sensor);
-    first_keyframe_ = keyframe.id + 1;
-    first_segment_ = keyframe.estimate.segment + 1;
-    if (keyframe.id % kBetweenLooksAtMemory == 0) keep_within_memory();
-  });
-  for (const LoopEdge& loop : session.loop_edges()) graph_.restore_loop(loop);
 }
 
 Keyframe Backend::renumbered(const Keyframe& keyframe) const {
@@ -103,37 +79,60 @@ void Backend::search_place(const Keyframe& keyframe) {
   std::vector<Keyframe>& waiting = search_->waiting;
   if (!keyframe.probe) waiting.push_back(keyframe);
   if (waiting.size() > kMostWaiting) waiting.erase(waiting.begin());
+  if (search_->found) return wait_for_map(keyframe);
   const auto found = search_->relocalizer.locate(keyframe);
   correction_.confidence = search_->relocalizer.confidence();
   // What is of other segments has no way to this place that odometry knows.
   const auto linked = [&](const Keyframe& k) {
     return k.estimate.segment == keyframe.estimate.segment;
   };
-  if (!found || std::ranges::none_of(search_->waiting, linked)) return;
-  if (search_->session.empty()) {
-    std::erase_if(waiting, std::not_fn(linked));
-    set_apart(waiting);
-  }
-  settle_down(*found, keyframe.estimate.T_odom_sensor);
+  if (!found || std::ranges::none_of(waiting, linked)) return;
+  std::erase_if(waiting, std::not_fn(linked));
+  search_->found = Found{*found, keyframe.estimate.T_odom_sensor, keyframe.estimate.segment};
+  if (!restoring_) return settle_down();
+  // The place can be told; what is to be built waits.
+  correction_.T_map_odom = found->T_map_sensor * keyframe.estimate.T_odom_sensor.inverse();
+  correction_.placed = true;
+  ++correction_.epoch;
 }
 
-// What was held back goes where the scan of `T_odom_sensor` was found.
-void Backend::settle_down(const Relocation& found, const Pose& T_odom_sensor) {
-  const PlaceSearch search = std::move(*search_);
+// Odometry carries the place that was found, as long as it can.
+void Backend::wait_for_map(const Keyframe& keyframe) {
+  if (keyframe.estimate.segment != search_->found->segment) {
+    search_->found.reset();
+    search_->begin = keyframe.estimate.stamp;
+    correction_.placed = false;
+    correction_.confidence = 0.0;
+    ++correction_.epoch;
+  } else if (!restoring_) {
+    settle_down();
+  }
+}
+
+// What was held back goes where the sensor was found.
+void Backend::settle_down() {
+  const Found found = *std::move(search_->found);
+  const std::filesystem::path session = search_->session;
+  std::vector<Keyframe> waiting = std::move(search_->waiting);
+  // Nobody reads the session any more when it is written.
   search_.reset();
-  if (!search.session.empty()) continue_session(search.session);
-  const Pose T_map_odom = found.T_map_sensor * T_odom_sensor.inverse();
-  for (const Keyframe& keyframe : search.waiting) {
+  if (session.empty()) {
+    set_apart(waiting);
+  } else {
+    continue_session(session);
+  }
+  const Pose T_map_odom = found.relocation.T_map_sensor * found.T_odom_sensor.inverse();
+  for (Keyframe& keyframe : waiting) {
     const Pose T_map_sensor = T_map_odom * keyframe.estimate.T_odom_sensor;
     graph_.add_at(keyframe, T_map_sensor);
-    map_->insert(T_map_sensor,
-                 config_.moving_objects ? moving_.standing(keyframe) : keyframe.points);
-    if (store_) store_->add(keyframe, T_map_sensor);
+    leave_out_moving(keyframe);
+    map_->insert(T_map_sensor, keyframe.points);
+    if (store_) store_->add(keyframe, T_map_sensor, words_of(keyframe));
     if (loops_.remember) loops_.remember(keyframe);
   }
   std::vector<LoopEdge> edges;
-  for (const PlaceSighting& sighting : found.sightings) {
-    const LoopEdge edge = edge_to_keyframe(sighting, search.waiting);
+  for (const PlaceSighting& sighting : found.relocation.sightings) {
+    const LoopEdge edge = edge_to_keyframe(sighting, waiting);
     const auto same = [&](const LoopEdge& e) { return e.from == edge.from && e.to == edge.to; };
     if (std::ranges::none_of(edges, same)) edges.push_back(edge);
   }
@@ -172,7 +171,7 @@ std::vector<Keyframe> Backend::give_up_search() {
 
 double Backend::searching_s() const {
   if (localizer_) return localizer_->searching_s();
-  if (!search_ || !search_->begin) return 0.0;
+  if (!search_ || !search_->begin || search_->found) return 0.0;
   return static_cast<double>(stamp_ - *search_->begin) * kSecondsPerNs;
 }
 

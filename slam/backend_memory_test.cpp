@@ -139,9 +139,10 @@ TEST_F(BackendMemory, AMapThatIsGoneOnWithIsLoadedWithinTheLimit) {
     Backend backend(config(0), directory_ / "earlier.glint");
     for (std::uint64_t k = 0; k < kKeyframes; ++k) backend.process(on_road(k));
   }
-  const Backend backend(config(10), directory_ / "later.glint", {}, {},
-                        directory_ / "earlier.glint");
-  EXPECT_LT(backend.memory().bytes, 10'000'000U);
+  Backend backend(config(10), directory_ / "later.glint", {}, {}, directory_ / "earlier.glint");
+  do {
+    EXPECT_LT(backend.memory().bytes, 10'000'000U);
+  } while (backend.restore_more());
   EXPECT_GT(backend.memory().disk_bytes, 5'000'000U);
   EXPECT_EQ(backend.snapshot()->keyframe_count, kKeyframes);
 }

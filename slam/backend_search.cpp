@@ -31,9 +31,10 @@ bool Backend::search_anew(const std::optional<PlaceGuess>& guess) {
   if (!search_) {
     auto relocalizer = knowing_own_map();
     if (!relocalizer) return false;
-    search_.emplace(PlaceSearch{{}, std::move(*relocalizer), {}, {}});
+    search_.emplace(PlaceSearch{{}, std::move(*relocalizer), {}, {}, {}});
   }
   search_->begin.reset();
+  search_->found.reset();
   search_->relocalizer.begin_anew();
   if (guess) search_->relocalizer.begin_near(*guess);
   correction_.placed = false;
@@ -47,13 +48,8 @@ bool Backend::search_anew(const std::optional<PlaceGuess>& guess) {
 std::optional<Relocalizer> Backend::knowing_own_map() {
   if (!store_ || graph_.nodes().empty() || !store_->commit()) return std::nullopt;
   try {
-    const SessionReader session(session_file_);
-    Relocalizer relocalizer(open_vocabulary(config_.vocabulary));
-    session.for_each_keyframe([&](SessionKeyframe&& stored) {
-      relocalizer.remember(stored.keyframe, stored.T_map_sensor);
-      if (alive_) alive_();
-    });
-    return relocalizer;
+    return knowing_places(
+        std::make_shared<const SessionReader>(session_file_, SessionCheck::kVersion), {});
   } catch (const InputError&) {
     return std::nullopt;
   }

@@ -47,24 +47,8 @@ bool is_near(const Pose& a, const Pose& b) {
 
 }  // namespace
 
-std::vector<Place> nearest_places(std::span<const Place> places, const Eigen::Vector3d& at_m,
-                                  std::size_t most, double reach_m) {
-  std::vector<std::pair<double, std::size_t>> order;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const double away_m2 = (places[i].T_odom_sensor.translation_m - at_m).squaredNorm();
-    if (away_m2 <= reach_m * reach_m) order.emplace_back(away_m2, i);
-  }
-  const auto end = order.begin() + static_cast<std::ptrdiff_t>(std::min(most, order.size()));
-  std::partial_sort(order.begin(), end, order.end());
-  std::vector<Place> nearest;
-  nearest.reserve(most);
-  for (auto at = order.begin(); at != end; ++at) nearest.push_back(places[at->second]);
-  return nearest;
-}
-
-std::optional<MapFix> MapSight::fix(std::span<const Place> places, const Place& scan,
-                                    const Pose& guess) {
-  const std::vector<Place> around = nearest_places(places, guess.translation_m, kAround, kReach_m);
+std::optional<MapFix> MapSight::fix(PlaceShelf& places, const Place& scan, const Pose& guess) {
+  const std::vector<Place> around = places.nearest(guess.translation_m, kAround, kReach_m);
   if (around.empty()) return std::nullopt;
   // Near the scan, so that floats will do.
   const Pose T_map_base = around.front().T_odom_sensor;

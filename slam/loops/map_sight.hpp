@@ -4,10 +4,9 @@
 
 #include <Eigen/Core>
 #include <optional>
-#include <span>
 
 #include "slam/loops/loop_verifier.hpp"
-#include "slam/loops/place.hpp"
+#include "slam/loops/place_shelf.hpp"
 
 namespace glint::slam {
 
@@ -26,16 +25,12 @@ struct MapFix {
 /// Thread-compatible; buffers are reused.
 class MapSight {
  public:
-  /// `places`: the map's, their odometry is the map. `guess`: T_map_sensor of the scan, to within
+  /// `places`: the map's. `guess`: T_map_sensor of the scan, to within
   /// some 0.5 m. Null where the scan does not lie on the map, or the map is not there.
-  std::optional<MapFix> fix(std::span<const Place> places, const Place& scan, const Pose& guess);
+  std::optional<MapFix> fix(PlaceShelf& places, const Place& scan, const Pose& guess);
 
  private:
   LoopVerifier verifier_;
 };
-
-/// The `most` places nearest to a point of the map, within `reach_m` of it, the nearest first.
-std::vector<Place> nearest_places(std::span<const Place> places, const Eigen::Vector3d& at_m,
-                                  std::size_t most, double reach_m);
 
 }  // namespace glint::slam

@@ -37,6 +37,14 @@ void thin(std::vector<Eigen::Vector3f>& points_m, float voxel_m) {
 
 }  // namespace
 
+std::vector<Descriptor> place_descriptors(const Features& features, const PlaceOptions& options) {
+  std::vector<Descriptor> descriptors;
+  for (const std::size_t i : strongest(features, options.most_keypoints)) {
+    descriptors.push_back(features.descriptors[i]);
+  }
+  return descriptors;
+}
+
 Place make_place(const Keyframe& keyframe, const PlaceOptions& options) {
   Place place;
   place.id = keyframe.id;

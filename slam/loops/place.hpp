@@ -36,6 +36,9 @@ struct PlaceOptions {
   float finest_voxel_m = 0.25F;  ///< Points are thinned to one a voxel at least this large.
 };
 
+/// The descriptors that a place of these keypoints has, in its order.
+std::vector<Descriptor> place_descriptors(const Features& features,
+                                          const PlaceOptions& options = {});
 /// Keeps the strongest keypoints and thinned points of a keyframe; leaves time and path at zero.
 Place make_place(const Keyframe& keyframe, const PlaceOptions& options = {});
 

@@ -3,9 +3,9 @@
 #include "slam/loops/relocalizer.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
-#include "slam/loops/density_search.hpp"
 #include "slam/loops/look_alike.hpp"
 
 namespace glint::slam {
@@ -52,9 +52,16 @@ Relocalizer::Relocalizer(std::shared_ptr<const Vocabulary> vocabulary)
 
 void Relocalizer::remember(const Keyframe& keyframe, const Pose& T_map_sensor) {
   if (is_bare(keyframe)) return;
-  Place& place = places_.emplace_back(make_place(keyframe));
+  Place place = make_place(keyframe);
   place.T_odom_sensor = T_map_sensor;
   index_.add(vocabulary_->bag_of(place.descriptors));
+  places_.add(std::move(place));
+}
+
+void Relocalizer::remember_unread(std::uint64_t keyframe, std::uint32_t segment,
+                                  const Pose& T_map_sensor, const BagOfWords& words) {
+  index_.add(words);
+  places_.add_unread(keyframe, segment, T_map_sensor);
 }
 
 void Relocalizer::begin_near(const PlaceGuess& guess) {
@@ -120,7 +127,7 @@ bool Relocalizer::is_expected(const Pose& T_map_sensor, const Pose& T_odom_senso
 std::vector<std::size_t> Relocalizer::near_guess(std::span<const ScoredPlace> found,
                                                  const Pose& T_odom_sensor) const {
   const auto is_near = [&](std::size_t entry) {
-    Pose here = places_[entry].T_odom_sensor;
+    Pose here = places_.T_map_sensor(entry);
     // A keyframe shows all around: it may have looked another way.
     here.rotation = expected_->guess.T_map_sensor.rotation *
                     (expected_->T_odom_first->inverse() * T_odom_sensor).rotation;
@@ -160,7 +167,7 @@ std::vector<std::size_t> Relocalizer::likeliest(const BagOfWords& bag, const Pos
 
 void Relocalizer::judge(std::size_t entry, const Place& current, LoopCandidate& candidate,
                         Scan& scan) {
-  const Place& older = places_[entry];
+  const Place older = places_.at(entry);
   const Consensus start = verifier_.match(older, current, candidate);
   if (!candidate.reason.empty()) return;
   Fit fit;
@@ -170,7 +177,7 @@ void Relocalizer::judge(std::size_t entry, const Place& current, LoopCandidate& 
     candidate.reason = "another keyframe of the same place is more alike";
     return;
   }
-  if (!verifier_.registered(older, places_around(places_, entry, kSurfacesAround), current, start,
+  if (!verifier_.registered(older, places_.around(entry, kSurfacesAround), current, start,
                             candidate, fit.edge)) {
     return;
   }
@@ -179,28 +186,13 @@ void Relocalizer::judge(std::size_t entry, const Place& current, LoopCandidate& 
     candidate.reason = "it is not where the sensor is thought to be";
     return;
   }
-  const std::vector<Place> near = nearest(fit.T_map_sensor);
+  const std::vector<Place> near = places_.nearest(fit.T_map_sensor.translation_m, kStandIns,
+                                                  std::numeric_limits<double>::infinity());
   fit.there = compare_places(near.front(), near, current,
                              near.front().T_odom_sensor.inverse() * fit.T_map_sensor);
   fit.here = compare_places(current, {&current, 1}, near.front(),
                             fit.T_map_sensor.inverse() * near.front().T_odom_sensor);
   scan.fits.push_back(std::move(fit));
-}
-
-// The places nearest to it, the nearest first.
-std::vector<Place> Relocalizer::nearest(const Pose& T_map_sensor) const {
-  std::vector<std::pair<double, std::size_t>> order;
-  order.reserve(places_.size());
-  for (std::size_t i = 0; i < places_.size(); ++i) {
-    order.emplace_back(
-        (places_[i].T_odom_sensor.translation_m - T_map_sensor.translation_m).squaredNorm(), i);
-  }
-  const auto end = order.begin() + static_cast<std::ptrdiff_t>(std::min(kStandIns, order.size()));
-  std::partial_sort(order.begin(), end, order.end());
-  std::vector<Place> places;
-  places.reserve(kStandIns);
-  for (auto at = order.begin(); at != end; ++at) places.push_back(places_[at->second]);
-  return places;
 }
 
 bool Relocalizer::agree(const Scan& a, const Fit& fit_a, const Scan& b, const Fit& fit_b) const {

@@ -16,6 +16,7 @@
 #include "slam/loops/loop_verifier.hpp"
 #include "slam/loops/place.hpp"
 #include "slam/loops/place_index.hpp"
+#include "slam/loops/place_shelf.hpp"
 #include "slam/loops/vocabulary.hpp"
 
 namespace glint::slam {
@@ -51,9 +52,14 @@ class Relocalizer {
   /// A keyframe of the map, in the order of its session, and where the map has it. A bare one is
   /// no place to be found.
   void remember(const Keyframe& keyframe, const Pose& T_map_sensor);
+  /// The same for one whose words are known: what else it shows is read when it is looked at.
+  void remember_unread(std::uint64_t keyframe, std::uint32_t segment, const Pose& T_map_sensor,
+                       const BagOfWords& words);
+  /// What reads those; to be called before the first of them.
+  void read_with(PlaceShelf::Read read) { places_.read_with(std::move(read)); }
   [[nodiscard]] std::size_t place_count() const { return places_.size(); }
   /// Theirs, in that order; their odometry is the map.
-  [[nodiscard]] const std::vector<Place>& places() const { return places_; }
+  [[nodiscard]] PlaceShelf& places() { return places_; }
 
   /// Looks for the place of a scan. What odometry says of its motion since the scans before it
   /// counts; those of other segments are forgotten.
@@ -105,7 +111,6 @@ class Relocalizer {
   [[nodiscard]] std::vector<std::size_t> likeliest(const BagOfWords& bag,
                                                    const Pose& T_odom_sensor);
   void judge(std::size_t entry, const Place& current, LoopCandidate& candidate, Scan& scan);
-  [[nodiscard]] std::vector<Place> nearest(const Pose& T_map_sensor) const;
   [[nodiscard]] bool agree(const Scan& a, const Fit& fit_a, const Scan& b, const Fit& fit_b) const;
   [[nodiscard]] Hypothesis gather(const Scan& of, const Fit& fit) const;
   [[nodiscard]] bool has_rival(const Hypothesis& place) const;
@@ -116,7 +121,7 @@ class Relocalizer {
   const std::shared_ptr<const Vocabulary> vocabulary_;
   PlaceIndex index_;
   LoopVerifier verifier_;
-  std::vector<Place> places_;  ///< Their odometry is the map.
+  PlaceShelf places_;
   std::deque<Scan> scans_;     ///< That were asked about; the current one is the last.
   std::uint32_t segment_ = 0;  ///< Of these.
   std::optional<Expectation> expected_;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "driver/core/error.hpp"
+#include "slam/loops/place.hpp"
 #include "slam/loops/vocabulary.hpp"
 #include "slam/merge/map_join.hpp"
 #include "slam/merge/merged_view.hpp"
@@ -78,12 +79,12 @@ void join_all(std::span<const fs::path> files, std::list<Unjoined>& waiting,
 }
 
 void write_meta(const SessionReader& session, SessionStore& store) {
-  for (const char* key :
-       {"preset", "vocabulary_hash", "map_voxel_m", "map_max_points", "moving_objects"}) {
+  for (const char* key : {"preset", "map_voxel_m", "map_max_points", "moving_objects"}) {
     if (std::string value = session.meta(key); !value.empty()) {
       store.set_meta(key, std::move(value));
     }
   }
+  store.set_meta("vocabulary_hash", fmt::format("{:016x}", default_vocabulary()->hash()));
 }
 
 /// A session's keyframes with the sensors that they are of.
@@ -97,7 +98,8 @@ class PartWriter {
       if (sensors_[next_].first_keyframe + first_keyframe_ > keyframe.id) break;
       store_.set_sensor(sensors_[next_].info);
     }
-    store_.add(keyframe, T_map_sensor);
+    store_.add(keyframe, T_map_sensor,
+               default_vocabulary()->bag_of(place_descriptors(keyframe.features)));
     // Sooner than a store that waits for its time refuses more.
     if (++added_ % kKeyframesACommit == 0) store_.commit();
   }

@@ -12,6 +12,7 @@
 #include "slam/store/point_codec.hpp"
 #include "slam/store/test_session.hpp"
 #include "slam/store/value_codec.hpp"
+#include "slam/store/words_codec.hpp"
 
 namespace glint::slam {
 namespace {
@@ -118,6 +119,23 @@ TEST(ValueCodec, APoseThatIsNoneIsRefused) {
   broken = test::sample_map_pose(3);
   broken.rotation.coeffs() *= 1.1;
   EXPECT_FALSE(decode_pose(encode_pose(broken)));
+}
+
+TEST(WordsCodec, WordsComeBackAndWhatIsNoBagIsRefused) {
+  const BagOfWords words = {{3, 0.25F}, {70000, 0.5F}, {70001, 0.25F}};
+  const auto back = decode_words(encode_words(words));
+  ASSERT_TRUE(back);
+  ASSERT_EQ(back->size(), 3U);
+  EXPECT_EQ((*back)[1].word, 70000U);
+  EXPECT_EQ((*back)[1].weight, 0.5F);
+  ASSERT_TRUE(decode_words({}));
+  EXPECT_TRUE(decode_words({})->empty());
+  const std::vector<std::byte> bytes = encode_words(words);
+  EXPECT_FALSE(decode_words(std::span(bytes).first(bytes.size() - 1)));
+  EXPECT_FALSE(decode_words(encode_words({{3, 0.5F}, {3, 0.5F}})));
+  EXPECT_FALSE(decode_words(encode_words({{4, 0.5F}, {3, 0.5F}})));
+  EXPECT_FALSE(decode_words(encode_words({{3, std::numeric_limits<float>::quiet_NaN()}})));
+  EXPECT_FALSE(decode_words(encode_words({{3, -1.0F}})));
 }
 
 }  // namespace

@@ -11,16 +11,23 @@
 #include "slam/store/session_damage.hpp"
 #include "slam/store/statement.hpp"
 #include "slam/store/value_codec.hpp"
+#include "slam/store/words_codec.hpp"
 
 namespace glint::slam {
 namespace {
 
 // The odometry edge to a keyframe comes with it.
-constexpr const char* kKeyframes =
+constexpr const char* kOutline =
     "SELECT k.id, t_ns, frame_id, segment, T_odom_sensor, T_map_sensor, sequence, state, "
-    "completeness, k.covariance, gravity, points, data, e.covariance FROM keyframes k "
-    "LEFT JOIN clouds ON clouds.keyframe = k.id LEFT JOIN features ON features.keyframe = k.id "
-    "LEFT JOIN edges e ON e.to_keyframe = k.id AND e.kind = 'odometry' ";
+    "completeness, k.covariance, gravity, e.covariance";
+constexpr const char* kFromKeyframes =
+    " FROM keyframes k LEFT JOIN edges e ON e.to_keyframe = k.id AND e.kind = 'odometry' ";
+constexpr const char* kPayload =
+    "LEFT JOIN clouds ON clouds.keyframe = k.id LEFT JOIN features ON features.keyframe = k.id ";
+
+std::string all_of_keyframes() {
+  return fmt::format("{}, points, data{}{}", kOutline, kFromKeyframes, kPayload);
+}
 
 std::string name_of(std::uint64_t keyframe, const char* part) {
   return fmt::format("{} of keyframe {}", part, keyframe);
@@ -136,27 +143,56 @@ std::vector<SessionEvent> SessionReader::events() const {
 }
 
 void SessionReader::for_each_keyframe(const std::function<void(SessionKeyframe&&)>& take) const {
-  query(std::string(kKeyframes) + "ORDER BY k.id",
+  query(all_of_keyframes() + "ORDER BY k.id",
         [&](const Statement& row) { take(keyframe_of(row)); });
+}
+
+void SessionReader::for_some_keyframes(std::uint64_t first, std::size_t most,
+                                       const std::function<void(SessionKeyframe&&)>& take) const {
+  query(
+      all_of_keyframes() + "WHERE k.id >= ? ORDER BY k.id LIMIT ?",
+      [&](const Statement& row) { take(keyframe_of(row)); }, first, most);
+}
+
+bool SessionReader::has_words() const {
+  bool there = false;
+  query("SELECT count(*) FROM sqlite_schema WHERE type = 'table' AND name = 'words'",
+        [&](const Statement& row) { there = row.integer(0) > 0; });
+  return there;
+}
+
+void SessionReader::for_each_outline(const std::function<void(KeyframeOutline&&)>& take) const {
+  const std::string sql =
+      has_words() ? fmt::format("{}, w.data{}LEFT JOIN words w ON w.keyframe = k.id ORDER BY k.id",
+                                kOutline, kFromKeyframes)
+                  : fmt::format("{}, NULL{}ORDER BY k.id", kOutline, kFromKeyframes);
+  query(sql, [&](const Statement& row) {
+    KeyframeOutline outline;
+    read_outline(row, outline.keyframe, outline.T_map_sensor);
+    if (!row.is_null(12)) {
+      outline.words = sound(decode_words(row.bytes(12)), name_of(outline.keyframe.id, "the words"));
+    }
+    take(std::move(outline));
+  });
 }
 
 std::optional<SessionKeyframe> SessionReader::keyframe(std::uint64_t id) const {
   std::optional<SessionKeyframe> keyframe;
   query(
-      std::string(kKeyframes) + "WHERE k.id = ?",
+      all_of_keyframes() + "WHERE k.id = ?",
       [&](const Statement& row) { keyframe = keyframe_of(row); }, id);
   return keyframe;
 }
 
-SessionKeyframe SessionReader::keyframe_of(const Statement& row) const {
-  SessionKeyframe out;
-  const std::uint64_t id = out.keyframe.id = id_at(row, 0);
-  OdometryEstimate& estimate = out.keyframe.estimate;
+void SessionReader::read_outline(const Statement& row, Keyframe& keyframe,
+                                 Pose& T_map_sensor) const {
+  const std::uint64_t id = keyframe.id = id_at(row, 0);
+  OdometryEstimate& estimate = keyframe.estimate;
   estimate.stamp.ns = row.integer(1);
   estimate.frame_id = static_cast<std::uint32_t>(row.integer(2));
   estimate.segment = static_cast<std::uint32_t>(row.integer(3));
   estimate.T_odom_sensor = sound(decode_pose(row.bytes(4)), name_of(id, "the pose"));
-  out.T_map_sensor = sound(decode_pose(row.bytes(5)), name_of(id, "the pose"));
+  T_map_sensor = sound(decode_pose(row.bytes(5)), name_of(id, "the pose"));
   estimate.sequence = id_at(row, 6);
   estimate.state = sound(tracking_state_from(row.text(7)), name_of(id, "the state"));
   estimate.completeness = row.real(8);
@@ -165,14 +201,20 @@ SessionKeyframe SessionReader::keyframe_of(const Statement& row) const {
   };
   if (!row.is_null(9)) estimate.covariance = covariance_at(9);
   if (!row.is_null(10)) {
-    out.keyframe.gravity = sound(decode_gravity(row.bytes(10)), name_of(id, "gravity"));
+    keyframe.gravity = sound(decode_gravity(row.bytes(10)), name_of(id, "gravity"));
   }
-  out.keyframe.points = sound(decode_points(row.bytes(11)), name_of(id, "the points"));
+  if (!row.is_null(11)) keyframe.edge_covariance = covariance_at(11);
+}
+
+SessionKeyframe SessionReader::keyframe_of(const Statement& row) const {
+  SessionKeyframe out;
+  read_outline(row, out.keyframe, out.T_map_sensor);
+  const std::uint64_t id = out.keyframe.id;
+  out.keyframe.points = sound(decode_points(row.bytes(12)), name_of(id, "the points"));
   // Version 1 kept none.
-  if (!row.is_null(12)) {
-    out.keyframe.features = sound(decode_features(row.bytes(12)), name_of(id, "the keypoints"));
+  if (!row.is_null(13)) {
+    out.keyframe.features = sound(decode_features(row.bytes(13)), name_of(id, "the keypoints"));
   }
-  if (!row.is_null(13)) out.keyframe.edge_covariance = covariance_at(13);
   return out;
 }
 

@@ -14,6 +14,7 @@
 #include "driver/core/sensor_info.hpp"
 #include "slam/keyframe.hpp"
 #include "slam/loop_edge.hpp"
+#include "slam/loops/vocabulary.hpp"
 #include "slam/store/database.hpp"
 #include "slam/store/session_event.hpp"
 #include "slam/store/session_file.hpp"
@@ -27,6 +28,13 @@ class Statement;
 struct SessionKeyframe {
   Keyframe keyframe;
   Pose T_map_sensor;
+};
+
+/// A keyframe without its points and features, and what its image looks like.
+struct KeyframeOutline {
+  Keyframe keyframe;
+  Pose T_map_sensor;
+  std::optional<BagOfWords> words;  ///< Null: the session does not say.
 };
 
 /// A keyframe without its points and features.
@@ -76,12 +84,19 @@ class SessionReader {
 
   /// Calls `take` with each keyframe, in order of their ids; one at a time is in memory.
   void for_each_keyframe(const std::function<void(SessionKeyframe&&)>& take) const;
+  /// The same without what takes long to read.
+  void for_each_outline(const std::function<void(KeyframeOutline&&)>& take) const;
+  /// The first `most` keyframes whose ids are `first` or more, in order.
+  void for_some_keyframes(std::uint64_t first, std::size_t most,
+                          const std::function<void(SessionKeyframe&&)>& take) const;
   /// Null when there is none of that id.
   [[nodiscard]] std::optional<SessionKeyframe> keyframe(std::uint64_t id) const;
 
  private:
   [[nodiscard]] std::vector<LoopEdge> edges(const char* kind) const;
+  [[nodiscard]] bool has_words() const;
   [[nodiscard]] SessionKeyframe keyframe_of(const Statement& row) const;
+  void read_outline(const Statement& row, Keyframe& keyframe, Pose& T_map_sensor) const;
   /// Calls `visit` with each row; what SQLite refuses becomes an InputError.
   template <class Visit, class... Values>
   void query(const std::string& sql, Visit visit, const Values&... values) const;

@@ -6,7 +6,8 @@ namespace glint::slam {
 namespace {
 
 std::size_t rest_of(const KeyframeRecord& keyframe) {
-  return keyframe.points.capacity() + keyframe.features.capacity();
+  return keyframe.points.capacity() + keyframe.features.capacity() +
+         (keyframe.words ? keyframe.words->capacity() : 0);
 }
 
 std::size_t rest_of(const MetaRecord& meta) { return meta.key.size() + meta.value.size(); }

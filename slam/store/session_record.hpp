@@ -24,6 +24,7 @@ struct KeyframeRecord {
   std::optional<FeltGravity> gravity;
   std::vector<std::byte> points;
   std::vector<std::byte> features;
+  std::optional<std::vector<std::byte>> words;
   std::optional<LoopEdge> odometry;  ///< From the keyframe before; null for the first of a segment.
 };
 

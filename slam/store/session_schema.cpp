@@ -29,6 +29,14 @@ CREATE VIEW segments AS
   FROM keyframes GROUP BY segment;
 )sql";
 
+// What keyframes look like: enough to know where to look for a place, so that a large map need not
+// be read for it. Sessions from before it lack the table, and one may lack a keyframe's words.
+constexpr const char* kWordsTable = R"sql(
+CREATE TABLE IF NOT EXISTS words (
+  keyframe INTEGER PRIMARY KEY REFERENCES keyframes(id),
+  data BLOB NOT NULL);
+)sql";
+
 constexpr const char* kTables = R"sql(
 CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
 CREATE TABLE keyframes (
@@ -81,6 +89,7 @@ void put_formats(Database& database) {
   put.run("features_format",
           "zstd of: byte 1, uint32 count, then descriptors (32 bytes), points (3 float32, sensor "
           "frame, m), u px, v px, angle rad, response (float32), octave (byte)");
+  put.run("words_format", "of the vocabulary, by word: uint32 word, float32 weight; little-endian");
 }
 
 void sign(Database& database) {
@@ -116,6 +125,7 @@ InputError foreign(const std::filesystem::path& file) {
 void create_session_tables(Database& database) {
   database.run(kTables);
   database.run(kPayloadTables);
+  database.run(kWordsTable);
   put_formats(database);
   sign(database);
 }
@@ -137,6 +147,7 @@ std::int64_t session_version(const Database& database, const std::filesystem::pa
 }
 
 void migrate_session(Database& database, std::int64_t version) {
+  database.run(kWordsTable);
   if (version == kSessionVersion) return;
   Transaction transaction(database);
   database.run(kPayloadTables);

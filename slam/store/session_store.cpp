@@ -15,6 +15,7 @@
 #include "slam/store/session_file.hpp"
 #include "slam/store/session_schema.hpp"
 #include "slam/store/temporary_file.hpp"
+#include "slam/store/words_codec.hpp"
 
 namespace glint::slam {
 namespace {
@@ -92,7 +93,8 @@ void SessionStore::set_sensor(const SensorInfo& info) {
   take(SensorRecord{next_keyframe_, to_metadata_json(info)});
 }
 
-void SessionStore::add(const Keyframe& keyframe, const Pose& T_map_sensor) {
+void SessionStore::add(const Keyframe& keyframe, const Pose& T_map_sensor,
+                       const std::optional<BagOfWords>& words) {
   if (waiting_bytes_ > options_.most_waiting_bytes) {
     ++refused_;
     return fail(error_);
@@ -103,7 +105,9 @@ void SessionStore::add(const Keyframe& keyframe, const Pose& T_map_sensor) {
                         keyframe.gravity,
                         encode_points(keyframe.points),
                         encode_features(keyframe.features),
+                        {},
                         {}};
+  if (words) record.words = encode_words(*words);
   if (last_ && last_->second.segment == keyframe.estimate.segment) {
     const Pose& T_odom_from = last_->second.T_odom_sensor;
     record.odometry =

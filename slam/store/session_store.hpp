@@ -14,6 +14,7 @@
 #include "driver/core/clock.hpp"
 #include "driver/core/sensor_info.hpp"
 #include "slam/keyframe.hpp"
+#include "slam/loops/vocabulary.hpp"
 #include "slam/store/database.hpp"
 #include "slam/store/loop_changes.hpp"
 #include "slam/store/session_record.hpp"
@@ -49,8 +50,10 @@ class SessionStore {
   void set_meta(std::string key, std::string value);
   /// Whose scans the keyframes that follow are of.
   void set_sensor(const SensorInfo& info);
-  /// A keyframe, and the odometry edge to the one before it of the same segment.
-  void add(const Keyframe& keyframe, const Pose& T_map_sensor);
+  /// A keyframe, and the odometry edge to the one before it of the same segment. `words`: what it
+  /// looks like, by the vocabulary whose hash the session has; null where that is not known.
+  void add(const Keyframe& keyframe, const Pose& T_map_sensor,
+           const std::optional<BagOfWords>& words = {});
   void apply(const LoopChanges& changes);
 
   /// Writes all that waits and returns when it is on the disk. False when it could not be written

@@ -11,6 +11,7 @@ SessionWriter::SessionWriter(const Database& database)
                     "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"),
       add_points_(database, "INSERT INTO clouds VALUES (?, ?)"),
       add_features_(database, "INSERT INTO features VALUES (?, ?)"),
+      add_words_(database, "INSERT INTO words VALUES (?, ?)"),
       add_edge_(database,
                 "INSERT INTO edges (from_keyframe, to_keyframe, kind, T_from_to, covariance) "
                 "VALUES (?, ?, ?, ?, ?)"),
@@ -50,6 +51,7 @@ void SessionWriter::put(const KeyframeRecord& keyframe) {
   }
   add_points_.run(keyframe.id, std::span<const std::byte>(keyframe.points));
   add_features_.run(keyframe.id, std::span<const std::byte>(keyframe.features));
+  if (keyframe.words) add_words_.run(keyframe.id, std::span<const std::byte>(*keyframe.words));
   if (keyframe.odometry) put_edge(*keyframe.odometry, "odometry");
 }
 

@@ -32,6 +32,7 @@ class SessionWriter {
   Statement add_keyframe_;
   Statement add_points_;
   Statement add_features_;
+  Statement add_words_;
   Statement add_edge_;
   Statement remove_loop_;
   Statement add_event_;
