@@ -177,6 +177,7 @@ void Frontend::Impl::begin_map(const LidarScan& scan, const Pose& T_odom_scan) {
 void Frontend::Impl::begin_at_rest(const Pose& T_odom_scan) {
   prior.stop();
   gravity.clear();
+  start_level.begin();
   blind_drift.reset();
   const auto felt = imu.between(current_time, current_time + (-info.scan_period_ns()));
   if (felt) prior.level_by(T_odom_scan.rotation * -felt->velocity_mps);
@@ -228,8 +229,13 @@ void Frontend::Impl::learn_from(const Registration& motion, double dt_s) {
 
 // For the pose graph: how odometry's tilt drifts shows by what the accelerometer feels.
 void Frontend::Impl::follow_gravity(const Pose& T_odom_scan, double dt_s) {
-  if (!config.pgo_gravity || !config.accelerometer || measured() == nullptr) return;
+  if (!config.accelerometer || measured() == nullptr) return;
   const auto felt = imu.between(reference.time, current_time);
+  if (felt) {
+    const auto down = start_level.add(reference.T_odom_scan, T_odom_scan, *felt, dt_s);
+    if (down) prior.level_anew(*down);
+  }
+  if (!config.pgo_gravity) return;
   if (felt) {
     gravity.add(reference.T_odom_scan, T_odom_scan, *felt, dt_s);
   } else {

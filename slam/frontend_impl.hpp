@@ -21,6 +21,7 @@
 #include "slam/motion_prior.hpp"
 #include "slam/odometry_covariance.hpp"
 #include "slam/scan_motion.hpp"
+#include "slam/start_level.hpp"
 
 namespace glint::slam {
 
@@ -97,6 +98,7 @@ struct Frontend::Impl {
   ImuTrack imu;
   MotionPrior prior;
   GravityEstimate gravity;
+  StartLevel start_level;
   MotionState state;  // At the last scan's reference time.
 
   ScanImages images;

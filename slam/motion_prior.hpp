@@ -68,6 +68,8 @@ class MotionPrior {
   /// A sensor that is all but at rest measured this specific force, odometry frame: it tells where
   /// down is. Only the first one counts.
   void level_by(const Eigen::Vector3d& force_mps2);
+  /// Gravity in the odometry frame is found to be this, m/s^2.
+  void level_anew(const Eigen::Vector3d& gravity_mps2) { gravity_mps2_ = gravity_mps2; }
   /// Nothing is known: not where down is, and the velocity may be anything that a robot does.
   void stop();
 
