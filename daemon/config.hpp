@@ -70,7 +70,7 @@ struct Config {
   struct Map {
     std::string on_start = "new";
     double search_s = 60.0;
-    int memory_mb = 0;
+    int memory_mb = 250;
   };
   struct Log {
     std::string level = "info";
