@@ -3,6 +3,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
@@ -115,17 +117,24 @@ inline bool takes_auto(const ConfigKey& key) {
 /// Every key there is, in the order of the shipped file.
 std::span<const ConfigKey> config_keys();
 
-/// Reads a TOML file over `config`; slam.preset is applied before the other slam keys.
+/// Where the values of a configuration come from, by dotted key: "FILE:LINE", "--set", or "preset
+/// NAME" for what slam.preset brought. What is not in it has its default.
+using ConfigOrigins = std::map<std::string, std::string, std::less<>>;
+
+/// Reads a TOML file over `config`; slam.preset is applied before the other slam keys. `origins`,
+/// if there are any, follow.
 /// @throws ConfigError naming file and line for an unknown key (with the nearest known one), a
 /// wrong type or a value out of range.
-void load_config(const std::filesystem::path& file, Config& config);
+void load_config(const std::filesystem::path& file, Config& config,
+                 ConfigOrigins* origins = nullptr);
 
 /// Applies one `key=value`, the value as in TOML; a value that is no TOML is taken as a string.
 /// Setting slam.preset replaces every slam value. @throws ConfigError.
-void apply_setting(Config& config, std::string_view setting);
+void apply_setting(Config& config, std::string_view setting, ConfigOrigins* origins = nullptr);
 
 /// Applies several settings in order, slam.preset first. @throws ConfigError.
-void apply_settings(Config& config, std::span<const std::string> settings);
+void apply_settings(Config& config, std::span<const std::string> settings,
+                    ConfigOrigins* origins = nullptr);
 
 /// The effective configuration: an object for each group of keys.
 Json to_json(const Config& config);

@@ -127,6 +127,19 @@ void apply(Config& config, const ConfigKey& key, const toml::node& node, const s
   if (key.name == "slam.preset") config.slam = slam::preset_config(config.slam.preset);
 }
 
+/// As apply() has it: a preset replaces every value of its group.
+void note_origin(ConfigOrigins* origins, const Config& config, const ConfigKey& key,
+                 std::string origin) {
+  if (origins == nullptr) return;
+  if (key.name == "slam.preset") {
+    for (const ConfigKey& other : config_keys()) {
+      if (!other.name.starts_with("slam.")) continue;
+      origins->insert_or_assign(std::string(other.name), "preset " + config.slam.preset);
+    }
+  }
+  origins->insert_or_assign(std::string(key.name), std::move(origin));
+}
+
 struct Setting {
   std::string name;
   const toml::node* node;
@@ -160,7 +173,7 @@ toml::table parse_setting_value(const std::string& text) {
 
 }  // namespace
 
-void load_config(const std::filesystem::path& file, Config& config) {
+void load_config(const std::filesystem::path& file, Config& config, ConfigOrigins* origins) {
   toml::table table;
   try {
     table = toml::parse_file(file.string());
@@ -175,11 +188,13 @@ void load_config(const std::filesystem::path& file, Config& config) {
   for (const Setting& setting : settings) {
     const std::string where =
         fmt::format("{}:{}", file.string(), setting.node->source().begin.line);
-    apply(config, find_key(setting.name, where), *setting.node, where);
+    const ConfigKey& key = find_key(setting.name, where);
+    apply(config, key, *setting.node, where);
+    note_origin(origins, config, key, where);
   }
 }
 
-void apply_setting(Config& config, std::string_view setting) {
+void apply_setting(Config& config, std::string_view setting, ConfigOrigins* origins) {
   const auto equals = setting.find('=');
   if (equals == std::string_view::npos) {
     throw ConfigError(fmt::format("--set {}: expected KEY=VALUE", setting));
@@ -188,12 +203,13 @@ void apply_setting(Config& config, std::string_view setting) {
   const ConfigKey& key = find_key(setting.substr(0, equals), where);
   const toml::table table = parse_setting_value(std::string(setting.substr(equals + 1)));
   apply(config, key, *table.get("value"), where);
+  note_origin(origins, config, key, "--set");
 }
 
-void apply_settings(Config& config, std::span<const std::string> settings) {
+void apply_settings(Config& config, std::span<const std::string> settings, ConfigOrigins* origins) {
   std::vector<std::string> ordered(settings.begin(), settings.end());
   preset_first(ordered, [](const std::string& s) { return s.starts_with("slam.preset="); });
-  for (const std::string& setting : ordered) apply_setting(config, setting);
+  for (const std::string& setting : ordered) apply_setting(config, setting, origins);
 }
 
 }  // namespace glint::daemon

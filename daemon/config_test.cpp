@@ -110,6 +110,28 @@ TEST_F(ConfigTest, AValueOutOfRangeIsAnErrorWithTheRange) {
   EXPECT_THAT(load_error("[log]\nlevel = \"loud\"\n"), HasSubstr("debug|info|warn|error"));
 }
 
+TEST_F(ConfigTest, EveryNumberIsHeldAgainstItsRange) {
+  int numbers = 0;
+  for (const ConfigKey& key : config_keys()) {
+    const bool whole = std::holds_alternative<int& (*)(Config&)>(key.field);
+    if (!whole && !std::holds_alternative<double& (*)(Config&)>(key.field)) continue;
+    ++numbers;
+    ASSERT_LT(key.min, key.max) << key.name;
+    const auto dot = key.name.find('.');
+    const auto with = [&](double value) {
+      const std::string text = whole ? fmt::format("{}", static_cast<std::int64_t>(value))
+                                     : fmt::format("{:.9f}", value);
+      return load_error(
+          fmt::format("[{}]\n{} = {}\n", key.name.substr(0, dot), key.name.substr(dot + 1), text));
+    };
+    EXPECT_EQ(with(key.max), "") << key.name;
+    for (const double outside : {key.min - 1.0, key.max + 1.0}) {
+      EXPECT_THAT(with(outside), AllOf(HasSubstr("config_test.toml:2: "), HasSubstr(key.name)));
+    }
+  }
+  EXPECT_GT(numbers, 40);
+}
+
 TEST_F(ConfigTest, AMountThatIsNoPoseIsAnError) {
   EXPECT_THAT(load_error("[mount]\nT_base_sensor = [0, 0, 0, 0, 0, 1.57, 0]\n"),
               HasSubstr("qx, qy, qz, qw"));

@@ -6,10 +6,9 @@
 
 #include <CLI/CLI.hpp>
 #include <boost/asio/io_context.hpp>
-#include <filesystem>
 #include <iostream>
 
-#include "daemon/config.hpp"
+#include "daemon/config_layers.hpp"
 #include "daemon/input.hpp"
 #include "daemon/log.hpp"
 #include "daemon/service.hpp"
@@ -21,29 +20,20 @@ namespace {
 constexpr int kFailed = 1;
 constexpr int kUsage = 2;
 constexpr int kBadConfig = 78;  // EX_CONFIG: systemd is told not to start the daemon again.
-constexpr const char* kDefaultConfig = "/etc/glint/glint.toml";
 
 struct Options {
-  std::string config_file = kDefaultConfig;
-  bool config_given = false;
+  std::string config_file;
   bool check_config = false;
   bool print_config = false;
   std::vector<std::string> settings;
   InputOptions input;
 };
 
-/// Defaults, then the file, then --set. The default file need not exist.
-Config read_config(const Options& options) {
-  Config config;
-  if (options.config_given || std::filesystem::exists(options.config_file)) {
-    load_config(options.config_file, config);
-  }
-  apply_settings(config, options.settings);
-  return config;
-}
-
 int serve(const Options& options) {
-  const Config config = read_config(options);
+  const auto read_config = [&options] {
+    return read_config_layers(options.config_file, options.settings).config;
+  };
+  const Config config = read_config();
   if (options.print_config) {
     std::cout << to_toml(config);
     return 0;
@@ -58,8 +48,7 @@ int serve(const Options& options) {
   // Its end would wait for a name that is being looked up, which takes the resolver half a minute
   // when no server answers: it is left to the process's end.
   static boost::asio::io_context& io = *new boost::asio::io_context(1);
-  Service service(io, config, open_input(options.input, config),
-                  [&options] { return read_config(options); });
+  Service service(io, config, open_input(options.input, config), read_config);
   return service.run();
 }
 
@@ -67,8 +56,9 @@ int run(int argc, char** argv) {
   CLI::App app{"glintd: pose and map from an Ouster lidar, over TCP/JSON.", "glintd"};
   Options options;
   app.set_version_flag("--version", std::string("glintd ") + kVersion);
-  const auto* config =
-      app.add_option("--config", options.config_file, "Configuration file")->capture_default_str();
+  app.add_option("--config", options.config_file,
+                 "Configuration file, with FILE.d/*.toml over it (default: " +
+                     std::string(kUsualConfigFile) + ")");
   app.add_flag("--check-config", options.check_config, "Check the configuration and exit");
   app.add_flag("--print-config", options.print_config,
                "Print every key with its value, unit and range, and exit");
@@ -82,7 +72,6 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   try {
     app.parse(argc, argv);
-    options.config_given = config->count() > 0;
     return serve(options);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kUsage;

@@ -209,7 +209,9 @@ TEST_F(GlintdTest, ReloadTellsWhatItCannotChange) {
   arguments.insert(arguments.end(), {"--config", config.string()});
   Process process(arguments, directory_);
   ASSERT_FALSE(poll_status([](const Json&) { return true; }).is_null()) << process.log();
-  std::ofstream(config) << "[log]\nlevel = \"debug\"\n[slam]\norb_features = 500\n";
+  std::ofstream(config) << "[log]\nlevel = \"info\"\n[slam]\norb_features = 500\n";
+  fs::create_directory(config.string() + ".d");
+  std::ofstream(config.string() + ".d/50-loud.toml") << "[log]\nlevel = \"debug\"\n";
   process.signal(SIGHUP);
   for (int i = 0; i < 500 && process.log().find("log.level is debug") == std::string::npos; ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));

@@ -33,6 +33,7 @@ void add_simulate(CLI::App& app);
 void add_emulate(CLI::App& app);
 void add_record(CLI::App& app);
 void add_doctor(CLI::App& app);
+void add_config(CLI::App& app);
 void add_status(CLI::App& app);
 void add_pose(CLI::App& app);
 void add_watch(CLI::App& app);

@@ -11,7 +11,7 @@
 
 #include "daemon/cli/command.hpp"
 #include "daemon/client.hpp"
-#include "daemon/config.hpp"
+#include "daemon/config_layers.hpp"
 #include "daemon/doctor/judgement.hpp"
 #include "daemon/doctor/probes.hpp"
 #include "driver/session/sensor_address.hpp"
@@ -24,7 +24,6 @@ using daemon::FindingLevel;
 using daemon::Findings;
 using daemon::Json;
 
-constexpr const char* kUsualConfig = "/etc/glint/glint.toml";
 constexpr std::uint16_t kUsualLidarPort = 7502;
 constexpr std::uint16_t kUsualImuPort = 7503;
 
@@ -35,17 +34,6 @@ struct DoctorOptions {
   double seconds = 1.5;
   bool json = false;
 };
-
-daemon::Config load_settings(const DoctorOptions& options) {
-  daemon::Config config;
-  std::error_code ignored;
-  if (!options.config.empty()) {
-    daemon::load_config(options.config, config);
-  } else if (std::filesystem::exists(kUsualConfig, ignored)) {
-    daemon::load_config(kUsualConfig, config);
-  }
-  return config;
-}
 
 void append(Findings& findings, Findings more) {
   for (Finding& finding : more) findings.push_back(std::move(finding));
@@ -78,7 +66,7 @@ Findings ask_daemon(const std::string& connect) {
 }
 
 Findings examine(const DoctorOptions& options) {
-  const daemon::Config config = load_settings(options);
+  const daemon::Config config = daemon::read_config_layers(options.config, {}).config;
   daemon::DoctorWishes wishes{config.sensor.rcvbuf_bytes, config.mount.T_base_sensor,
                               options.sensor};
   Findings findings;
@@ -164,7 +152,7 @@ void add_doctor(CLI::App& app) {
   command->add_option("--config", options->config,
                       fmt::format("glintd's settings, for ports and mounting; default {} if it is "
                                   "there",
-                                  kUsualConfig));
+                                  daemon::kUsualConfigFile));
   command->add_option("--connect", options->connect,
                       "Also ask a running glintd: HOST:PORT, or the path of a Unix socket");
   command->add_option("--seconds", options->seconds, "How long to listen for packets, s")

@@ -29,6 +29,7 @@ int run(int argc, char** argv) {
   add_emulate(app);
   add_record(app);
   add_doctor(app);
+  add_config(app);
   add_status(app);
   add_pose(app);
   add_watch(app);

@@ -20,7 +20,7 @@
 #include "daemon/cli/trajectory_error.hpp"
 #include "daemon/cli/trajectory_writer.hpp"
 #include "daemon/clock_settings.hpp"
-#include "daemon/config.hpp"
+#include "daemon/config_layers.hpp"
 #include "daemon/export/ply_writer.hpp"
 #include "daemon/replay_pacer.hpp"
 #include "daemon/version.hpp"
@@ -47,7 +47,9 @@ std::atomic<bool> interrupted = false;
 // The configuration file, then the preset named on the command line, then each --set.
 daemon::Config effective_config(const ReplayCommand& command) {
   daemon::Config config;
-  if (!command.config_file.empty()) daemon::load_config(command.config_file, config);
+  if (!command.config_file.empty()) {
+    config = daemon::read_config_layers(command.config_file, {}).config;
+  }
   if (!command.preset.empty()) config.slam = slam::preset_config(command.preset);
   daemon::apply_settings(config, command.settings);
   return config;

@@ -9,24 +9,12 @@
 
 #include "daemon/cli/client_command.hpp"
 #include "daemon/cli/command.hpp"
+#include "daemon/cli/status_text.hpp"
 
 namespace glint::cli {
 namespace {
 
 using daemon::Json;
-
-/// Counters that are worth a line only when something happened.
-void print_losses(const Json& counters) {
-  std::string text;
-  for (const char* name :
-       {"kernel_drops", "foreign_packets", "early_packets", "queue_drops", "missing_packets",
-        "late_packets", "duplicate_packets", "bad_size", "bad_type", "bad_serial", "bad_columns",
-        "incomplete_scans", "paused_scans", "dropped_keyframes", "store_failures"}) {
-    const auto value = counters.value(name, std::uint64_t{0});
-    if (value > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, value);
-  }
-  fmt::print("losses     {}\n", text.empty() ? "none" : text);
-}
 
 void print_stages(const Json& stages) {
   if (stages.empty()) return;
@@ -65,7 +53,7 @@ void print_status(const Json& status) {
              counters["lidar_packets"].get<std::uint64_t>(),
              counters["imu_packets"].get<std::uint64_t>(), counters["scans"].get<std::uint64_t>(),
              counters["poses"].get<std::uint64_t>());
-  print_losses(counters);
+  fmt::print("losses     {}\n", losses_text(counters));
   fmt::print("map        {} points in {} tiles, {} keyframes, epoch {}\n",
              map["points"].get<std::uint64_t>(), map["tiles"].get<std::uint64_t>(),
              map["keyframes"].get<std::uint64_t>(), status["map_epoch"].get<int>());

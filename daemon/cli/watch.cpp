@@ -10,6 +10,7 @@
 
 #include "daemon/cli/client_command.hpp"
 #include "daemon/cli/command.hpp"
+#include "daemon/cli/monitor.hpp"
 
 namespace glint::cli {
 namespace {
@@ -23,6 +24,7 @@ struct WatchCommand {
   std::string child = "sensor";
   double rate_hz = 0.0;
   std::uint64_t count = 0;
+  bool monitor = false;
 };
 
 std::string pose_line(const Json& pose) {
@@ -84,7 +86,10 @@ void add_watch(CLI::App& app) {
   sub->add_option("--rate-hz", command->rate_hz, "At most so many a second (default: every pose)")
       ->check(CLI::Range(0.01, 1000.0));
   sub->add_option("--count", command->count, "Stop after so many lines (default: never)");
-  sub->callback([command] { run(*command); });
+  sub->add_flag("--monitor", command->monitor,
+                "Show state, rates, losses, times, map and events on the whole terminal instead")
+      ->excludes("--json", "--count");
+  sub->callback([command] { command->monitor ? run_monitor(command->client) : run(*command); });
 }
 
 }  // namespace glint::cli
