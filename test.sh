@@ -19,14 +19,15 @@ say() {
 
 labels=(-LE long)
 all=false
+packages=test
 case "${1:-}" in
   "") ;;
-  --all) labels=(); all=true ;;
+  --all) labels=(); all=true; packages=all ;;
   *) echo "usage: ./test.sh [--all]" >&2; exit 2 ;;
 esac
 
 say "installing the packages that the tests need"
-.ci/install-packages test
+.ci/install-packages $packages
 
 say "building"
 preset=release
