@@ -120,14 +120,17 @@ struct Notification {
 
 namespace detail {
 
-/// Lines of JSON to and from the daemon, after its hello and, with a token, authentication.
+/// Lines of JSON to and from the daemon, after its hello and, where it asks for that,
+/// authentication.
 class Connection {
  public:
   explicit Connection(Options options) : options_(std::move(options)) {
     open();
     try {
       greet();
-      if (!options_.token.empty()) call("authenticate", {{"token", options_.token}});
+      if (!options_.token.empty() && hello_.value("authentication", "") == "token") {
+        call("authenticate", {{"token", options_.token}});
+      }
     } catch (...) {
       ::close(socket_);
       throw;

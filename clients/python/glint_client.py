@@ -91,7 +91,7 @@ def _open_socket(target, timeout_s):
 
 
 class _Connection:
-    """Lines of JSON to and from the daemon, after its hello and, with a token, authentication."""
+    """Lines of JSON to and from the daemon, after its hello and, where it asks for that, authentication."""
 
     def __init__(self, place):
         self._place = place
@@ -103,12 +103,12 @@ class _Connection:
         except OSError as error:
             raise self._lost(f"cannot be reached ({error}); is it running?") from error
         try:
-            if place.tls is not None:
+            if place.tls is not None and "/" not in place.target:
                 host = place.target.rpartition(":")[0].strip("[]")
                 self._socket = place.tls.wrap_socket(self._socket, server_hostname=host)
             self.hello = self._greeted()
             self._max_line = self.hello.get("max_line", _MAX_LINE_BYTES)
-            if place.token is not None:
+            if place.token is not None and self.hello.get("authentication") == "token":
                 self.call("authenticate", {"token": place.token})
         except OSError as error:
             self.close()

@@ -22,8 +22,7 @@ constexpr milliseconds kSilence{3000};
 constexpr milliseconds kKeyPeriod{100};
 constexpr int kKeyPeriodsUntilRetry = 10;
 
-void follow(const std::string& target, MonitorPage& page, const TerminalScreen& screen) {
-  daemon::Client client(target);
+void follow(daemon::Client& client, MonitorPage& page, const TerminalScreen& screen) {
   client.call("subscribe", {{"topics", {"pose", "status", "events"}}, {"rate_hz", kPageRate_hz}});
   while (!screen.leaving()) {
     const Json message = client.next_message(kSilence);
@@ -42,8 +41,8 @@ void run_monitor(const ClientOptions& options) {
   screen.show(page.lines());
   while (!screen.leaving()) {
     try {
-      follow(options.connect, page, screen);
-    } catch (const std::runtime_error& error) {  // ClientError, or BUSY.
+      with_client(options, [&](daemon::Client& client) { follow(client, page, screen); });
+    } catch (const std::runtime_error& error) {  // No connection any more, or BUSY.
       page.lose(error.what());
     }
     for (int i = 0; i < kKeyPeriodsUntilRetry && !screen.leaving(); ++i) {

@@ -9,8 +9,10 @@ import json
 import os
 import re
 import socket
+import ssl
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 import unittest
@@ -21,7 +23,7 @@ import glint_client
 from glint_client import Client, ConnectionLost, JobError, RequestError
 
 GLINTD = sys.argv.pop(1)
-HELLO = {"protocol": "1.0", "server": "test", "instance": "0", "map_epoch": 0, "max_line": 4096, "features": []}
+HELLO = {"protocol": "1.0", "server": "test", "instance": "0", "map_epoch": 0, "max_line": 1 << 20, "features": []}
 
 
 def line_of(**message):
@@ -31,10 +33,10 @@ def line_of(**message):
 class FakeServer:
     """Sends each connection `first`, then what `answer(request)` gives for each line."""
 
-    def __init__(self, first, answer=lambda request: None):
+    def __init__(self, first, answer=lambda request: None, tls=None):
         self.listener = socket.create_server(("127.0.0.1", 0))
         self.target = f"127.0.0.1:{self.listener.getsockname()[1]}"
-        self.first, self.answer, self.requests = first, answer, []
+        self.first, self.answer, self.tls, self.requests = first, answer, tls, []
         threading.Thread(target=self.serve, daemon=True).start()
 
     def serve(self):
@@ -47,6 +49,8 @@ class FakeServer:
 
     def talk(self, connection):
         try:
+            if self.tls is not None:
+                connection = self.tls.wrap_socket(connection, server_side=True)
             with connection, connection.makefile("rb") as lines:
                 connection.sendall(self.first)
                 for line in lines:
@@ -239,13 +243,33 @@ class OnOthers(unittest.TestCase):
             good = request["method"] != "authenticate" or request["params"]["token"] == "open"
             refusal = {"code": -32004, "message": "no such token", "data": {"code": "FORBIDDEN"}}
             return {"result": {}} if good else {"error": refusal}
-        with FakeServer(hello_line(), answer) as server:
+        with FakeServer(hello_line(authentication="token"), answer) as server:
             with Client(server.target, token="open") as client:
                 client.get_status()
             self.assertEqual(["authenticate", "get_status"], [r["method"] for r in server.requests])
             with self.assertRaises(RequestError) as raised:
                 Client(server.target, token="shut", wait_s=5)
             self.assertEqual("FORBIDDEN", raised.exception.code)
+            server.first = hello_line()
+            with Client(server.target, token="open") as client:  # Nobody is told who does not ask.
+                client.call("get_config")
+            self.assertEqual("get_config", server.requests[-1]["method"])
+            self.assertEqual("authenticate", server.requests[-2]["method"])
+            self.assertEqual("shut", server.requests[-2]["params"]["token"])
+
+    def test_tls_is_spoken_with_who_shows_the_right_certificate(self):
+        with tempfile.TemporaryDirectory(prefix="glint-tls-") as directory:
+            key, certificate = os.path.join(directory, "key.pem"), os.path.join(directory, "certificate.pem")
+            subprocess.run(["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "2", "-keyout", key, "-out",
+                            certificate, "-subj", "/CN=127.0.0.1", "-addext", "subjectAltName=IP:127.0.0.1"],
+                           check=True, stderr=subprocess.DEVNULL)
+            context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+            context.load_cert_chain(certificate, key)
+            with FakeServer(hello_line(), lambda request: {"result": {"state": "INIT", "padding": "x" * 300000}}, context) as server:
+                with Client(server.target, tls=certificate) as client:
+                    self.assertEqual("INIT", client.get_status()["state"])
+                with self.assertRaisesRegex(ConnectionLost, "CERTIFICATE_VERIFY_FAILED"):
+                    Client(server.target, tls=ssl.create_default_context())
 
     def test_only_questions_are_asked_again(self):
         answers = iter([None, {"result": {"state": "INIT"}}, None])

@@ -77,8 +77,23 @@ def read_page():
 PAGE = read_page()
 EXAMPLES = [json.loads(line) for block in re.findall(r"^```json\n(.*?)^```", PAGE, re.S | re.M)
             for line in block.splitlines()]
-REQUESTS = [example for example in EXAMPLES if "id" in example and "method" in example]
-ANSWERS = {example["id"]: example for example in EXAMPLES if "result" in example or "error" in example}
+
+
+def read_pairs():
+    """Each request with its answer, which follows it."""
+    pairs, request = [], None
+    for example in EXAMPLES:
+        if "id" in example and "method" in example:
+            assert request is None, f"no answer follows {request}"
+            request = example
+        elif "id" in example:
+            assert request is not None and request["id"] == example["id"], f"no request comes before {example}"
+            pairs.append((request, example))
+            request = None
+    return pairs
+
+
+PAIRS = read_pairs()
 
 
 class ThePage(unittest.TestCase):
@@ -88,18 +103,19 @@ class ThePage(unittest.TestCase):
             jsonschema.Draft202012Validator.check_schema(STORE[schema["$id"]])
 
     def test_examples_fit_their_schemas(self):
-        methods = {request["id"]: request["method"] for request in REQUESTS}
-        self.assertEqual(sorted(methods), sorted(ANSWERS), "requests and answers come in pairs")
-        self.assertEqual(len(REQUESTS), len(methods), "each request has an id of its own")
+        for request, answer in PAIRS:
+            with self.subTest(request=request):
+                check_message(request)
+                check_message(answer, request["method"])
         for example in EXAMPLES:
             with self.subTest(example=json.dumps(example)[:120]):
-                if "jsonrpc" in example:
-                    check_message(example, methods.get(example.get("id")))
-                else:
+                if "jsonrpc" not in example:
                     check(example, "status", "#/$defs/sensor_session")
+                elif "id" not in example:
+                    check_message(example)
 
     def test_a_member_that_no_schema_knows_is_noticed(self):
-        pose = next(example["result"] for example in ANSWERS.values() if "p_m" in example.get("result", {}))
+        pose = next(answer["result"] for _, answer in PAIRS if "p_m" in answer.get("result", {}))
         for spoilt in ({**pose, "speed": 1.0}, {**pose, "T_map_odom": {**pose["T_map_odom"], "r": 0}},
                        {**pose, "p_m": [1, 2]}, {**pose, "state": "GOOD"}):
             with self.assertRaises(jsonschema.ValidationError):
@@ -157,8 +173,8 @@ class TheDaemon(unittest.TestCase):
         self.assertEqual(features, page["params"]["features"])
         methods = {name.split(".")[0] for name in features}
         self.assertEqual(methods, set(SCHEMAS) - NO_METHODS)
-        shown = {request["method"] for request in REQUESTS}
-        for request in REQUESTS:
+        shown = {request["method"] for request, _ in PAIRS}
+        for request, _ in PAIRS:
             params = request.get("params", {})
             shown |= {f"{request['method']}.{name}" for name in [*params, *params.get("topics", [])]}
         self.assertEqual(set(), set(features) - shown)
@@ -167,13 +183,13 @@ class TheDaemon(unittest.TestCase):
         for name in ("office", "attic"):
             self.client.wait_for(self.client.save_map(name))
         kinds = set()
-        for request in sorted(REQUESTS, key=lambda request: [request["method"] == late for late in LATE[::-1]]):
+        for request, shown in sorted(PAIRS, key=lambda pair: [pair[0]["method"] == late for late in LATE[::-1]]):
             with self.subTest(request=json.dumps(request)):
                 reply = self.ask(request)
                 check_message(reply, request["method"])
-                self.assertEqual(ANSWERS[request["id"]].keys(), reply.keys(), reply)
+                self.assertEqual(shown.keys(), reply.keys(), reply)
                 if "error" in reply:
-                    self.assertEqual(ANSWERS[request["id"]]["error"]["data"]["code"], reply["error"]["data"]["code"])
+                    self.assertEqual(shown["error"]["data"]["code"], reply["error"]["data"]["code"])
                 elif "job" in reply["result"]:
                     self.client.wait_for(reply["result"]["job"])
                 if request["method"] == "pause":
