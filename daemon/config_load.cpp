@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "daemon/config.hpp"
+#include "daemon/config_form.hpp"
 #include "daemon/saved_maps.hpp"
 #include "driver/core/edit_distance.hpp"
 
@@ -27,6 +28,7 @@ const ConfigKey& find_key(std::string_view name, const std::string& where) {
 }
 
 std::string allowed(const ConfigKey& key) {
+  if (const auto form = config_form(key.name); !form.empty()) return std::string(form);
   if (!key.choices.empty() && !takes_auto(key)) return fmt::format("one of {}", key.choices);
   const std::string unit = key.unit.empty() ? "" : fmt::format(" {}", key.unit);
   constexpr std::array<std::string_view, 6> kTypes = {"true or false",
@@ -84,7 +86,7 @@ bool read(const ConfigKey& key, const toml::node& node, double& out) {
   }
   if (!node.is_number()) return false;
   const auto value = node.value<double>();
-  if (!value || !in_range(key, *value)) return false;
+  if (!value || !in_range(key, *value) || !has_config_form(key.name, *value)) return false;
   out = *value;
   return true;
 }
@@ -92,6 +94,7 @@ bool read(const ConfigKey& key, const toml::node& node, double& out) {
 bool read(const ConfigKey& key, const toml::node& node, std::string& out) {
   const auto value = node.value_exact<std::string>();
   if (!value || !is_choice(key.choices, *value)) return false;
+  if (!has_config_form(key.name, *value)) return false;
   out = *value;
   return true;
 }

@@ -132,6 +132,41 @@ TEST_F(ConfigTest, EveryNumberIsHeldAgainstItsRange) {
   EXPECT_GT(numbers, 40);
 }
 
+TEST_F(ConfigTest, ValuesThatNothingCouldMakeRightAreErrorsWithLine) {
+  struct Case {
+    const char* key;
+    std::vector<const char*> good;
+    std::vector<const char*> bad;
+  };
+  const std::string too_long(108, 'x');
+  const std::vector<Case> cases = {
+      {"sensor.udp_dest", {"auto", "10.0.0.1", ""}, {"localhost", "10.0.0"}},
+      {"sensor.source_address", {"any", "fe80::1%eth0", ""}, {"auto", "eth0"}},
+      {"sensor.bind_address", {"0.0.0.0", "::1", ""}, {"any", "10.0.0.256"}},
+      {"sensor.multicast_group", {"239.201.3.4", "ff02::7%eth0"}, {"192.0.2.1", "fe80::1"}},
+      {"sensor.lidar_mode", {"1024x10", "4096x5", ""}, {"1024", "1024x", "1024 x 10"}},
+      {"sensor.timestamp_mode", {"TIME_FROM_PTP_1588", ""}, {"PTP"}},
+      {"sensor.operating_mode", {"STANDBY", ""}, {"FAST"}},
+      {"server.listen",
+       {"127.0.0.1:0", "[::1]:7788", "glint:1", ""},
+       {"7788", "::1:7788", "a:99999"}},
+      {"server.unix_socket", {"auto", "/run/glintd.sock", ""}, {too_long.c_str()}},
+  };
+  for (const auto& [key, good, bad] : cases) {
+    const std::string name(key);
+    const auto load = [&](const char* value) {
+      return load_error(
+          fmt::format("[{}]\n{} = \"{}\"\n", name.substr(0, 6), name.substr(7), value));
+    };
+    for (const char* value : good) EXPECT_EQ(load(value), "") << key;
+    for (const char* value : bad) {
+      EXPECT_THAT(load(value), AllOf(HasSubstr("config_test.toml:2: '" + name), HasSubstr(value)));
+    }
+  }
+  EXPECT_EQ(setting_error("sensor.signal_multiplier=0.25"), "");
+  EXPECT_THAT(setting_error("sensor.signal_multiplier=1.7"), HasSubstr("0, 0.25, 0.5, 1, 2 or 3"));
+}
+
 TEST_F(ConfigTest, AMountThatIsNoPoseIsAnError) {
   EXPECT_THAT(load_error("[mount]\nT_base_sensor = [0, 0, 0, 0, 0, 1.57, 0]\n"),
               HasSubstr("qx, qy, qz, qw"));

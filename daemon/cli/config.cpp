@@ -29,7 +29,7 @@ Json traced_json(const daemon::LayeredConfig& layered) {
   const Json config = daemon::to_json(layered.config);
   for (const auto& [group, values] : config.items()) {
     for (const auto& [name, value] : values.items()) {
-      const auto origin = layered.origins.find(group + "." + name);
+      const auto origin = layered.origins.find(fmt::format("{}.{}", group, name));
       groups[group][name] = Json{
           {"value", value}, {"from", origin == layered.origins.end() ? "default" : origin->second}};
     }

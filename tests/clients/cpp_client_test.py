@@ -25,7 +25,7 @@ class CppClient(unittest.TestCase):
         cls.daemon = GlintdProcess(GLINTD)
         cls.daemon.start()
         cls.client = Client(cls.daemon.tcp)
-        await_status(cls.client, lambda status: status["map"]["keyframes"] >= 3)
+        await_status(cls.client, lambda status: status["map"]["points"] > 60000)  # Several pages.
 
     @classmethod
     def tearDownClass(cls):

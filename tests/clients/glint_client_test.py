@@ -115,6 +115,20 @@ class OnGlintd(unittest.TestCase):
         self.assertEqual("NO_SUCH_MAP", raised.exception.code)
         self.assertEqual("TRACKING", self.client.get_status()["state"])
 
+    def test_a_map_of_several_pages_is_whole(self):
+        await_status(self.client, lambda status: status["map"]["points"] > 60000)
+        self.client.pause()
+        try:
+            await_status(self.client,
+                         lambda status: status["state"] == "PAUSED" and not status["queues"]["keyframes"]["size"])
+            self.assertIn("next_cursor", self.client.call("get_map"))
+            whole = self.client.get_map()
+            self.assertEqual(self.client.get_status()["map"]["points"], whole.count)
+            self.assertEqual(whole.count, len(set(map(bytes, whole.points()))))
+        finally:
+            self.client.resume()
+            await_status(self.client, lambda status: status["state"] == "TRACKING")
+
     def test_the_map_follows_what_is_added(self):
         followed = self.client.get_map()
         self.assertEqual(followed.count, sum(len(tile) for tile in followed.tiles.values()))
@@ -210,6 +224,10 @@ class Reconnecting(unittest.TestCase):
             await_status(client, lambda status: status["map"]["points"] > 0)
             held.update()
             self.assertEqual(client.hello["instance"], held._instance)
+            epoch = client.wait_for(client.clear_map())["map_epoch"]
+            await_status(client, lambda status: status["map"]["points"] > 0)
+            held.update()
+            self.assertEqual(epoch, held.map_epoch)
             subscription.close()
             client.close()
 

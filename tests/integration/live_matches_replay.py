@@ -6,7 +6,6 @@ usage: live_matches_replay.py GLINT GLINTD CONFIG
 Simulates a walk, replays it, and sends the same capture over loopback to the daemon at the recorded
 speed while a subscribed client and one that asks ten times a second read the pose.
 """
-import json
 import os
 import signal
 import socket
@@ -15,6 +14,9 @@ import sys
 import tempfile
 import time
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "clients", "python"))
+from glint_client import Client
+
 SECONDS = 6
 
 
@@ -22,33 +24,6 @@ def free_port(kind):
     with socket.socket(socket.AF_INET, kind) as s:
         s.bind(("127.0.0.1", 0))
         return s.getsockname()[1]
-
-
-class Client:
-    """One JSON object a line, over TCP."""
-
-    def __init__(self, port):
-        deadline = time.monotonic() + 20
-        while True:
-            try:
-                self.socket = socket.create_connection(("127.0.0.1", port), timeout=20)
-                break
-            except ConnectionRefusedError:
-                if time.monotonic() > deadline:
-                    raise
-                time.sleep(0.05)
-        self.stream = self.socket.makefile("rw", encoding="utf-8", newline="\n")
-        assert json.loads(self.stream.readline())["method"] == "hello"
-
-    def call(self, method, params=None):
-        request = {"jsonrpc": "2.0", "id": 1, "method": method, "params": params or {}}
-        self.stream.write(json.dumps(request) + "\n")
-        self.stream.flush()
-        return json.loads(self.stream.readline())["result"]
-
-    def notifications(self):
-        for line in self.stream:
-            yield json.loads(line)["params"]
 
 
 def key_of(pose):
@@ -80,24 +55,24 @@ def run(glint, glintd, config, directory):
         command += ["--set", f"{key}={value}"]
     daemon = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
     try:
-        subscriber, poller = Client(tcp), Client(tcp)
-        subscriber.call("subscribe", {"topics": ["pose"], "frame": "odom"})
+        poller = Client(f"127.0.0.1:{tcp}", wait_s=20)
+        subscription = poller.subscribe("pose", frame="odom")
         sender = subprocess.Popen([glint, "emulate", capture, "--meta", meta, "--to", f"127.0.0.1:{lidar}",
                                    "--imu-port", str(imu), "--rate", "1"], stdout=subprocess.DEVNULL)
         polled, subscribed = {}, {}
         while sender.poll() is None:
-            pose = poller.call("get_pose", {"frame": "odom"})
+            pose = poller.get_pose("odom")
             if "frame_id" in pose:
                 polled[key_of(pose)[0]] = key_of(pose)[1]
             time.sleep(0.1)
         assert sender.returncode == 0
         last = max(expected, key=float)
-        for pose in subscriber.notifications():
+        for pose in subscription:
             assert pose["missed"] == 0, pose
             subscribed[key_of(pose)[0]] = key_of(pose)[1]
             if pose["t"] == last:
                 break
-        counters = poller.call("get_status")["counters"]
+        counters = poller.get_status()["counters"]
         assert counters["lidar_packets"] == 64 * 10 * SECONDS, counters
         for lost in ("kernel_drops", "queue_drops", "missing_packets", "late_packets", "incomplete_scans"):
             assert counters[lost] == 0, counters

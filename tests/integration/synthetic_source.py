@@ -31,11 +31,10 @@ def poses_of_daemon(glintd, config, source, settings, last, start):
         command += ["--set", f"{key}={value}"]
     daemon = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
     try:
-        client = Client(tcp)
-        client.call("subscribe", {"topics": ["pose"], "frame": "odom"})
+        subscription = Client(f"127.0.0.1:{tcp}", wait_s=20).subscribe("pose", frame="odom")
         sender = start()
         poses = {}
-        for pose in client.notifications():
+        for pose in subscription:
             assert pose["missed"] == 0, pose
             poses[key_of(pose)[0]] = key_of(pose)[1]
             if pose["t"] == last:
