@@ -14,7 +14,6 @@ import glob
 import os
 import random
 import signal
-import socket
 import sqlite3
 import statistics
 import subprocess
@@ -22,8 +21,9 @@ import sys
 import tempfile
 import time
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "integration"))
-from live_matches_replay import Client, free_port  # noqa: E402
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+from glintd_process import free_port  # noqa: E402
+from glint_client import Client  # noqa: E402
 
 WORLD = {"seed": 4, "columns": 512}
 WALK_S, MAPPED_S, SPEED = 60, 24.0, 2
@@ -75,26 +75,26 @@ class Daemon:
     """One start of the daemon, and what it told."""
 
     def __init__(self, glintd, config, source, state, log):
-        self.port = free_port(socket.SOCK_STREAM)
+        self.port = free_port()
         command = [glintd, "--config", config, "--source", source, "--rate", str(SPEED)]
         for key, value in {"server.listen": f"127.0.0.1:{self.port}", "server.unix_socket": "",
                            "state.directory": state, "map.on_start": "continue"}.items():
             command += ["--set", f"{key}={value}"]
         self.process = subprocess.Popen(command, stderr=log)
-        self.client = Client(self.port)
+        self.client = Client(f"127.0.0.1:{self.port}", timeout_s=20, wait_s=20)
         self.told = []  # When, in which file, how many keyframes.
         self.keyframes = 0  # Of the map, as told last.
         self.poses = {}
 
     def look(self):
         """Takes note of a pose and of what the status tells; True while the place in the map is known."""
-        status = self.client.call("get_status")
+        status = self.client.get_status()
         self.keyframes = status["map"]["keyframes"]
         # Until a large map is whole, what is new waits: no session is told of.
         if status.get("session_file"):
             # What is told is published before the answer comes.
             self.told.append((time.monotonic(), status["session_file"], status["map"]["keyframes"]))
-        pose = self.client.call("get_pose", {"frame": "map"})
+        pose = self.client.get_pose(frame="map")
         if pose["state"] not in ("TRACKING", "DEGRADED") or "p_m" not in pose:
             return False
         self.poses[pose["t_ns"]] = pose["p_m"]

@@ -1,0 +1,160 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Copyright 2026 The Glint Authors
+#
+# usage: tests/system/installed.sh PACKAGE.deb [WORK_DIRECTORY]
+# The package in a fresh Debian 12 that is booted with its own systemd: what operators expect of the service. Needs
+# root, debootstrap and systemd-nspawn; takes some five minutes.
+set -euo pipefail
+package=$(readlink -f "$1")
+here=$(cd "$(dirname "$0")" && pwd)
+
+for tool in debootstrap systemd-nspawn nsenter; do
+  command -v "$tool" >/dev/null || {
+    echo "installed.sh: needs $tool (apt-get install debootstrap systemd-container)" >&2
+    exit 77
+  }
+done
+[ "$(id -u)" -eq 0 ] || { echo "installed.sh: needs root" >&2; exit 77; }
+
+work=${2:-$(mktemp -d /var/tmp/glint-installed-XXXXXX)}
+root=$work/root
+machine=
+finish() {
+  local status=$?
+  [ $status -eq 0 ] || journal 2>/dev/null | tail -n 40 >&2 || true
+  [ -z "$machine" ] || { kill "$machine" 2>/dev/null; wait "$machine" 2>/dev/null; } || true
+  [ -n "${2:-}" ] || rm -rf "$work"
+  exit $status
+}
+trap 'finish "$@"' EXIT
+
+say() { echo "installed.sh: $*"; }
+fail() { echo "installed.sh: $*" >&2; exit 1; }
+inside() { nsenter --all --target "$leader" -- "$@"; }
+journal() { inside journalctl -u glintd --no-pager -o cat; }
+# await SECONDS COMMAND...: until it succeeds.
+await() {
+  local end=$((SECONDS + $1))
+  shift
+  until "$@" >/dev/null 2>&1; do
+    [ $SECONDS -lt $end ] || fail "not within its time: $*"
+    sleep 0.3
+  done
+}
+property() { inside systemctl show -P "$1" glintd.service; }
+active() { [ "$(property ActiveState)" = active ] && [ "$(property SubState)" = running ]; }
+state_is() { inside glint status --json | grep -q "\"state\":\"$1\""; }
+answers() { inside glint status --json; }
+restarted() { [ "$(property NRestarts)" -gt "$1" ] && active; }
+# A simulated sensor, that begins to send now.
+send() { inside glint simulate --world room --seconds 300 --seed 1 --to 127.0.0.1:7502 >/dev/null 2>&1 & }
+
+mirror=$(apt-get indextargets --format '$(SITE)' 'Created-By: Packages' | head -n 1)
+if [ ! -e "$root/etc/debian_version" ]; then
+  say "debootstrap into $root"
+  debootstrap --variant=minbase --include=ca-certificates,systemd,systemd-sysv,python3-minimal,procps,lintian \
+    bookworm "$root" "$mirror" >"$work/debootstrap.log" || { tail "$work/debootstrap.log" >&2; exit 1; }
+fi
+cp "$package" "$root/root/glint.deb"
+install -m 644 "$here/freeze_thread.py" "$root/root/"
+say "installing"
+systemd-nspawn -q -D "$root" --pipe --register=no --keep-unit sh -ec \
+  'apt-get update -qq; DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends /root/glint.deb' \
+  >"$work/install.log" 2>&1 || { tail -n 30 "$work/install.log" >&2; exit 1; }
+systemd-nspawn -q -D "$root" --pipe --register=no --keep-unit \
+  lintian --fail-on error --suppress-tags bad-distribution-in-changes-file /root/glint.deb ||
+  fail "lintian finds errors in the package"
+say "lintian finds no errors"
+
+say "booting"
+systemd-nspawn -q -D "$root" --boot --console=pipe --register=no --keep-unit --private-network \
+  >"$work/boot.log" 2>&1 </dev/null &
+machine=$!
+leader=
+for _ in $(seq 100); do
+  leader=$(pgrep -P "$machine" | head -n 1 || true)
+  [ -n "$leader" ] && [ "$(cat "/proc/$leader/comm")" = systemd ] && break
+  sleep 0.1
+done
+await 60 inside systemctl is-active multi-user.target
+[ "$(inside systemctl is-enabled glintd.service)" = enabled ] || fail "the unit is not enabled"
+
+inside glint simulate --world room --seconds 1 --seed 1 --out /etc/glint/sensor >/dev/null
+mkdir -p "$root/etc/glint/glint.toml.d"
+cat >"$root/etc/glint/glint.toml.d/sensor.toml" <<END
+[sensor]
+metadata_file = "/etc/glint/sensor/metadata.json"
+source_address = "127.0.0.1"
+END
+inside systemctl reset-failed glintd.service
+inside systemctl start glintd.service
+active || fail "the unit does not start without a sensor"
+await 10 answers
+say "READY, and answers while there is no sensor"
+
+send
+await 60 state_is TRACKING
+say "a sensor that appears later is tracked"
+
+for exposure in "$(inside systemd-analyze security glintd.service | sed -n 's/.*exposure level for glintd.service: \([0-9.]*\).*/\1/p')"; do
+  say "exposure $exposure"
+  [ "$(echo "$exposure" | tr -d .)" -le 12 ] || fail "exposure $exposure, more than 1.2"
+done
+
+before=$(property NRestarts)
+kill -9 "$(pgrep -P "$leader" -x glintd)"
+await 20 restarted "$before"
+await 60 state_is TRACKING
+say "kill -9: it is started again and tracks"
+
+before=$(property NRestarts)
+inside python3 /root/freeze_thread.py "$(property MainPID)" backend &
+await 90 restarted "$before"
+journal | grep -q -i watchdog || inside journalctl --no-pager -o cat | grep -q -i "watchdog" || fail "no word of the watchdog"
+say "a thread that hangs: the watchdog has it started again"
+
+cp "$root/etc/glint/glint.toml.d/sensor.toml" "$work/sensor.toml"
+printf '[slam]\nprest = "full"\n' >"$root/etc/glint/glint.toml.d/wrong.toml"
+inside systemctl restart glintd.service 2>/dev/null && fail "a wrong configuration starts"
+sleep 4
+[ "$(property ExecMainStatus)" = 78 ] || fail "exit status $(property ExecMainStatus), not 78"
+[ "$(property ActiveState)" = failed ] || fail "it is tried again with a wrong configuration"
+journal | grep -q "wrong.toml.*2.*prest" || fail "the journal does not name file, line and key"
+rm "$root/etc/glint/glint.toml.d/wrong.toml"
+say "a wrong configuration: exit 78, not started again, file and line in the journal"
+
+inside systemctl reset-failed glintd.service
+inside systemctl start glintd.service
+await 10 answers
+inside systemctl reload glintd.service
+await 10 answers
+active || fail "it does not outlive a reload"
+say "reload"
+
+inside systemctl stop glintd.service
+inside mount -t tmpfs -o size=1m,mode=0755 tmpfs /var/lib/private/glint
+inside systemctl start glintd.service
+await 60 state_is TRACKING
+await 60 sh -c "nsenter --all --target $leader -- glint status --json | grep -q '\"store_failures\":[1-9]'"
+state_is TRACKING || fail "it does not track while the disk is full"
+inside systemctl stop glintd.service
+inside umount /var/lib/private/glint
+say "a full disk: it tracks on, and says so"
+
+inside systemctl start glintd.service
+await 60 state_is TRACKING
+inside dpkg -i /root/glint.deb >/dev/null 2>&1
+await 20 active
+await 60 state_is TRACKING
+say "an upgrade while it runs: the new one tracks"
+
+inside dpkg -r glint >/dev/null 2>&1
+[ ! -e "$root/usr/bin/glintd" ] || fail "removed, but glintd is there"
+[ -e "$root/etc/glint/glint.toml" ] || fail "removing takes the configuration away"
+[ -d "$root/var/lib/private/glint" ] || fail "removing takes the maps away"
+inside dpkg -P glint >/dev/null 2>&1
+[ ! -e "$root/etc/glint/glint.toml" ] && [ ! -e "$root/var/lib/private/glint" ] && [ ! -e "$root/var/lib/glint" ] ||
+  fail "something is left after a purge"
+say "remove keeps configuration and maps, purge leaves nothing"
+say "all as operators expect"
