@@ -20,13 +20,13 @@ namespace glint::daemon {
 namespace {
 
 /// What hello announces: only what works.
-constexpr std::array kFeatures = {"get_pose",         "get_pose.at_ns", "get_pose.predict_ms",
-                                  "get_status",       "get_map",        "get_trajectory",
-                                  "get_config",       "subscribe.pose", "subscribe.status",
-                                  "subscribe.events", "unsubscribe",    "pause",
-                                  "resume",           "reset_odometry", "save_map",
-                                  "list_maps",        "delete_map",     "load_map",
-                                  "clear_map",        "relocalize",     "set_initial_pose"};
+constexpr std::array kFeatures = {
+    "authenticate",   "get_pose",         "get_pose.at_ns",   "get_pose.predict_ms",
+    "get_status",     "get_map",          "get_trajectory",   "get_config",
+    "subscribe.pose", "subscribe.status", "subscribe.events", "unsubscribe",
+    "pause",          "resume",           "reset_odometry",   "save_map",
+    "list_maps",      "delete_map",       "load_map",         "clear_map",
+    "relocalize",     "set_initial_pose"};
 
 /// Tells one run of the daemon from the next.
 std::string random_instance() {
@@ -155,13 +155,14 @@ std::optional<std::string> Api::take_step(const WorkerCall& call) {
   }
 }
 
-std::string Api::hello_line() const {
+std::string Api::hello_line(bool asks_token) const {
   const auto snapshot = runtime_.snapshot();
   return notification_line("hello", Json{{"protocol", "1.0"},
                                          {"server", fmt::format("glintd {}", kVersion)},
                                          {"instance", instance_},
                                          {"map_epoch", snapshot->correction.epoch},
                                          {"max_line", kMaxLineBytes},
+                                         {"authentication", asks_token ? "token" : "none"},
                                          {"features", kFeatures}});
 }
 
@@ -180,6 +181,7 @@ Json Api::status() const {
     service.sensor_problem = sensor_->problem();
   }
   service.clients = client_count_;
+  service.server = server_counters_;
   service.sessions_removed = sessions_removed_;
   return status_json(runtime_.status(), service, steady_now_ns());
 }

@@ -33,8 +33,8 @@ class Api {
   /// Answers a request that has an id. @throws RpcError, then there is no other reply.
   void call(const Request& request, Reply reply);
 
-  /// The first line of a connection.
-  [[nodiscard]] std::string hello_line() const;
+  /// The first line of a connection. `asks_token`: nothing but authenticate works before it.
+  [[nodiscard]] std::string hello_line(bool asks_token) const;
   [[nodiscard]] Json status() const;
   [[nodiscard]] Json pose(const Snapshot& snapshot, PoseFrames frames) const;
   /// sensor, state and time: what every answer has.
@@ -45,6 +45,8 @@ class Api {
   void set_sensor(const SensorLink& sensor) { sensor_ = &sensor; }
   /// Clients connected now, for status.
   void set_client_count(std::size_t count) { client_count_ = count; }
+  /// What the server counts, for status; must outlive the calls.
+  void set_server_counters(const ServerCounters& counters) { server_counters_ = &counters; }
   /// Old session files that were removed at start, for status.
   void set_sessions_removed(std::size_t count) { sessions_removed_ = count; }
 
@@ -98,6 +100,7 @@ class Api {
   const std::int64_t start_ns_;
   const SavedMaps maps_;
   std::size_t client_count_ = 0;
+  const ServerCounters* server_counters_ = nullptr;  ///< Null: there is no server.
   std::size_t sessions_removed_ = 0;
 };
 

@@ -220,13 +220,30 @@ constexpr std::array kKeys{
     ConfigKey{"slam.map_column_step", &at<&Config::slam, &SlamConfig::map_column_step>, 1, 64, "",
               "", "Every n-th column of a keyframe goes into the map."},
 
-    ConfigKey{"server.listen", &at<&Config::server, &Config::Server::listen>, 0, 0, "", "",
-              "Address and TCP port of the server, a loopback address. Empty: no TCP."},
+    ConfigKey{
+        "server.listen", &at<&Config::server, &Config::Server::listen>, 0, 0, "", "",
+        "Address and TCP port of the server. One that other machines reach needs a token, below. "
+        "Empty: no TCP."},
     ConfigKey{
         "server.unix_socket", &at<&Config::server, &Config::Server::unix_socket>, 0, 0, "", "",
         "Path of the Unix socket. auto: glintd.sock in systemd's RuntimeDirectory, else none."},
-    ConfigKey{"server.max_clients", &at<&Config::server, &Config::Server::max_clients>, 1, 1000, "",
-              "", "Clients served at a time; further ones get an error."},
+    ConfigKey{"server.read_token_file", &at<&Config::server, &Config::Server::read_token_file>, 0,
+              0, "", "",
+              "File with the tokens of clients that may read, one a line (openssl rand -hex 32). A "
+              "name without a path is one of systemd's credentials (LoadCredential=)."},
+    ConfigKey{"server.control_token_file",
+              &at<&Config::server, &Config::Server::control_token_file>, 0, 0, "", "",
+              "File with the tokens of clients that may also pause, reset, save, load and delete."},
+    ConfigKey{"server.require_token", &at<&Config::server, &Config::Server::require_token>, 0, 0,
+              "", "", "Clients of this machine need a token, too."},
+    ConfigKey{"server.tls_certificate_file",
+              &at<&Config::server, &Config::Server::tls_certificate_file>, 0, 0, "", "",
+              "Certificate chain, PEM: TCP speaks TLS 1.2 or newer. A path or a credential. Empty: "
+              "without TLS."},
+    ConfigKey{"server.tls_key_file", &at<&Config::server, &Config::Server::tls_key_file>, 0, 0, "",
+              "", "Key of the certificate, PEM without a passphrase."},
+    ConfigKey{"server.max_clients", &at<&Config::server, &Config::Server::max_clients>, 1, 10000,
+              "", "", "Clients served at a time; further ones get an error."},
     ConfigKey{"server.idle_timeout_s", &at<&Config::server, &Config::Server::idle_timeout_s>, 1,
               1e6, "s", "", "A client without a request or a subscription for so long is closed."},
     ConfigKey{"server.stall_timeout_s", &at<&Config::server, &Config::Server::stall_timeout_s>, 1,
@@ -235,6 +252,9 @@ constexpr std::array kKeys{
     ConfigKey{"server.outbox_bytes", &at<&Config::server, &Config::Server::outbox_bytes>, 2 << 20,
               1 << 30, "bytes", "",
               "Replies that may wait for a client; one that lets more pile up is closed."},
+    ConfigKey{"server.max_requests_per_s",
+              &at<&Config::server, &Config::Server::max_requests_per_s>, 1, 1e6, "1/s", "",
+              "Requests that a client may make; those beyond it wait."},
 
     ConfigKey{"state.directory", &at<&Config::state, &Config::State::directory>, 0, 0, "", "",
               "Where session files go. auto: systemd's StateDirectory, else none. Empty: none."},

@@ -59,10 +59,16 @@ struct Config {
   struct Server {
     std::string listen = "127.0.0.1:7788";
     std::string unix_socket = "auto";
+    std::string read_token_file;
+    std::string control_token_file;
+    bool require_token = false;
+    std::string tls_certificate_file;
+    std::string tls_key_file;
     int max_clients = 32;
     double idle_timeout_s = 900.0;
     double stall_timeout_s = 180.0;
     int outbox_bytes = 8 << 20;
+    double max_requests_per_s = 1000.0;
   };
   struct State {
     std::string directory = "auto";

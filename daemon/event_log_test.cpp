@@ -63,7 +63,8 @@ TEST(EventLogTest, ASubscriberThatIsTooLateLearnsHowManyItMissed) {
   TestDaemon daemon;
   boost::asio::io_context io;
   const Api api(io, daemon.runtime(), {});
-  Subscriptions subscriptions(api);
+  ServerCounters counters;
+  Subscriptions subscriptions(api, counters);
   subscriptions.subscribe({{"topics", {"events"}}});
   for (int i = 0; i < 300; ++i) daemon.runtime().events().post(event(i));
   const Json params = Json::parse(*subscriptions.next_line())["params"];

@@ -19,6 +19,8 @@ std::string_view code_name(int code) {
       return "TOO_LARGE";
     case kBusy:
       return "BUSY";
+    case kForbidden:
+      return "FORBIDDEN";
     case kNoSuchMap:
       return "NO_SUCH_MAP";
     case kOutOfRange:
@@ -92,16 +94,19 @@ Json RpcError::to_json() const {
   return out;
 }
 
+RpcError not_json() {
+  return {kParseError,
+          "not JSON: this server speaks JSON-RPC 2.0, one object a line, e.g. "
+          "{\"jsonrpc\":\"2.0\",\"id\":1,\"method\":\"get_pose\"}"};
+}
+
 std::variant<Request, BadRequest> parse_request(std::string_view line) {
   if (nesting_depth(line) > kMaxDepth) {
     return invalid(nullptr, "the request is nested too deeply");
   }
   Json message = Json::parse(line, nullptr, /*allow_exceptions=*/false);
   if (message.is_discarded()) {
-    return BadRequest{nullptr, RpcError(kParseError,
-                                        "not JSON: this server speaks JSON-RPC 2.0, one object a "
-                                        "line, e.g. {\"jsonrpc\":\"2.0\",\"id\":1,\"method\":"
-                                        "\"get_pose\"}")};
+    return BadRequest{nullptr, not_json()};
   }
   if (message.is_array()) return invalid(nullptr, "batches are not supported: one object a line");
   if (!message.is_object()) return invalid(nullptr, "a request is a JSON object");

@@ -31,6 +31,7 @@ constexpr int kInternalError = -32603;
 constexpr int kNotTracking = -32001;
 constexpr int kTooLarge = -32002;
 constexpr int kBusy = -32003;
+constexpr int kForbidden = -32004;
 constexpr int kNoSuchMap = -32005;
 constexpr int kOutOfRange = -32006;
 constexpr int kNotConfigured = -32007;
@@ -65,6 +66,8 @@ struct BadRequest {
   RpcError error;
 };
 std::variant<Request, BadRequest> parse_request(std::string_view line);
+/// The error of what is no JSON at all.
+RpcError not_json();
 
 // Lines to send, with their LF.
 std::string result_line(const Json& id, const Json& result);

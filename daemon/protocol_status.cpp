@@ -95,6 +95,22 @@ Json queue_json(const QueueStatus& queue) {
   return Json{{"size", queue.size}, {"capacity", queue.capacity}, {"dropped", queue.dropped}};
 }
 
+Json server_json(const ServerCounters& c) {
+  return Json{{"accepted_clients", c.accepted_clients},
+              {"refused_clients", c.refused_clients},
+              {"junk_clients", c.junk_clients},
+              {"idle_clients", c.idle_clients},
+              {"slow_clients", c.slow_clients},
+              {"failed_handshakes", c.failed_handshakes},
+              {"failed_authentications", c.failed_authentications},
+              {"requests", c.requests},
+              {"bad_requests", c.bad_requests},
+              {"forbidden_requests", c.forbidden_requests},
+              {"throttled_requests", c.throttled_requests},
+              {"missed_notifications", c.missed_notifications},
+              {"unsent_poses", c.unsent_poses}};
+}
+
 Json jobs_json(const std::vector<JobReport>& jobs) {
   Json out = Json::array();
   for (const JobReport& job : jobs) out.push_back(job_json(job));
@@ -225,6 +241,7 @@ Json status_json(const RuntimeStatus& runtime, const ServiceStatus& service, std
   out["session_file"] = runtime.map->session_file;
   if (!runtime.map->store_error.empty()) out["store_error"] = runtime.map->store_error;
   out["clients"] = service.clients;
+  if (service.server != nullptr) out["server"] = server_json(*service.server);
   out["rss_mb"] = resident_mb();
   out["uptime_s"] = static_cast<double>(service.uptime_ns) * kSecondsPerNs;
   out["version"] = kVersion;

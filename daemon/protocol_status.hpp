@@ -8,6 +8,7 @@
 
 #include "daemon/protocol.hpp"
 #include "daemon/runtime.hpp"
+#include "daemon/server_counters.hpp"
 #include "driver/session/session_status.hpp"
 
 namespace glint::daemon {
@@ -19,6 +20,7 @@ struct ServiceStatus {
   std::int64_t uptime_ns = 0;
   std::int64_t scan_period_ns = 0;
   std::size_t clients = 0;
+  const ServerCounters* server = nullptr;  ///< Null: there is none.
   std::size_t sessions_removed = 0;        ///< Old session files, at start.
   const SessionStatus* session = nullptr;  ///< Null: there is none with the sensor.
   std::string sensor_problem;  ///< A sentence on why the session does not help; may be empty.

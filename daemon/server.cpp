@@ -3,8 +3,10 @@
 #include "daemon/server.hpp"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <boost/asio/post.hpp>
 #include <chrono>
 #include <cstdlib>
@@ -29,7 +31,7 @@ constexpr int kMaxPosted = 256;
 SessionLimits limits_of(const Config::Server& server) {
   return {static_cast<std::size_t>(server.outbox_bytes),
           static_cast<std::int64_t>(server.idle_timeout_s * 1e9),
-          static_cast<std::int64_t>(server.stall_timeout_s * 1e9)};
+          static_cast<std::int64_t>(server.stall_timeout_s * 1e9), server.max_requests_per_s};
 }
 
 /// A socket file whose owner is gone stays behind and must go; one that answers is in use.
@@ -52,7 +54,9 @@ Server::Server(boost::asio::io_context& io, Api& api, const Config& config)
     : io_(io),
       api_(api),
       max_clients_(static_cast<std::size_t>(config.server.max_clients)),
-      limits_(limits_of(config.server)),
+      access_(config.server),
+      tls_(make_tls_context(config.server)),
+      context_{api, access_, limits_of(config.server), counters_},
       tcp_(io),
       unix_(io),
       timer_(io) {
@@ -63,6 +67,7 @@ Server::Server(boost::asio::io_context& io, Api& api, const Config& config)
   }
   if (!config.server.listen.empty()) listen_tcp(config.server.listen);
   if (!path.empty()) listen_unix(path);
+  api_.set_server_counters(counters_);
 }
 
 Server::~Server() {
@@ -89,12 +94,21 @@ void Server::listen_tcp(const std::string& address) {
         fmt::format("server.listen: cannot resolve {}: {}", target->host, error.message()));
   }
   const tcp::endpoint endpoint = found.begin()->endpoint();
-  if (!endpoint.address().is_loopback()) {
+  const bool is_local = endpoint.address().is_loopback();
+  if (!is_local && !access_.has_tokens()) {
     throw ConfigError(fmt::format(
-        "server.listen = \"{}\" is no loopback address: this version has no authentication, so it "
-        "serves this machine only; reach it from others through an SSH tunnel",
+        "server.listen = \"{}\" can be reached by other machines, which needs a token: name a file "
+        "with one in server.read_token_file or server.control_token_file, or listen on 127.0.0.1 "
+        "and reach it through an SSH tunnel",
         address));
   }
+  if (!is_local && !tls_) {
+    spdlog::warn(
+        "server.listen = \"{}\": tokens and poses cross the network in the clear; set "
+        "server.tls_certificate_file and server.tls_key_file",
+        address);
+  }
+  tcp_asks_token_ = !is_local || access_.is_required();
   tcp_.open(endpoint.protocol());
   tcp_.set_option(tcp::acceptor::reuse_address(true));
   tcp_.bind(endpoint, error);
@@ -136,11 +150,12 @@ void Server::accept(Acceptor& acceptor) {
   acceptor.async_accept([this, &acceptor](error_code error, auto socket) {
     if (closed_) return;
     if (!error) {
-      if constexpr (std::is_same_v<Acceptor, tcp::acceptor>) {
+      constexpr bool kIsTcp = std::is_same_v<Acceptor, tcp::acceptor>;
+      if constexpr (kIsTcp) {
         error_code ignored;
         socket.set_option(tcp::no_delay(true), ignored);
       }
-      admit(Session::Socket(std::move(socket)));
+      admit(Connection::Socket(std::move(socket)), kIsTcp);
     }
     if (!error) return accept(acceptor);
     // Out of file descriptors or the like: it passes, and a retry at once would spin.
@@ -151,28 +166,48 @@ void Server::accept(Acceptor& acceptor) {
   });
 }
 
-void Server::admit(Session::Socket socket) {
+// Who has no token must not keep out those who have one.
+std::size_t Server::most_without_token() const {
+  return std::max<std::size_t>(1, max_clients_ / 2);
+}
+
+void Server::refuse(Connection::Socket socket, const std::string& why) {
+  ++counters_.refused_clients;
+  // A fresh connection's buffer takes one line; if not, the client sees just the close.
+  error_code ignored;
+  socket.non_blocking(true, ignored);
+  socket.send(boost::asio::buffer(error_line(nullptr, RpcError(kBusy, why))), 0, ignored);
+}
+
+void Server::admit(Connection::Socket socket, bool is_tcp) {
   if (sessions_.size() >= max_clients_) {
-    const RpcError error(kBusy, fmt::format("{} clients are connected already, which is the most "
-                                            "allowed (server.max_clients)",
-                                            sessions_.size()));
-    // A fresh connection's buffer takes one line; if not, the client sees just the close.
-    error_code ignored;
-    socket.non_blocking(true, ignored);
-    socket.send(boost::asio::buffer(error_line(nullptr, error)), 0, ignored);
-    return;
+    return refuse(std::move(socket), fmt::format("{} clients are connected already, which is the "
+                                                 "most allowed (server.max_clients)",
+                                                 sessions_.size()));
   }
-  auto session = std::make_shared<Session>(std::move(socket), api_, limits_,
-                                           [this](const std::shared_ptr<Session>& closed) {
-                                             sessions_.erase(closed);
-                                             api_.set_client_count(sessions_.size());
-                                           });
+  const bool asks_token = is_tcp ? tcp_asks_token_ : access_.is_required();
+  const auto without_token = static_cast<std::size_t>(
+      std::ranges::count_if(sessions_, [](const auto& session) { return session->owes_token(); }));
+  if (asks_token && without_token >= most_without_token()) {
+    return refuse(std::move(socket),
+                  "too many clients have not sent a token yet; try again in ten seconds");
+  }
+  auto session =
+      std::make_shared<Session>(is_tcp && tls_ ? make_tls_connection(std::move(socket), *tls_)
+                                               : make_plain_connection(std::move(socket)),
+                                context_, asks_token ? Right::kNone : Right::kControl,
+                                [this](const std::shared_ptr<Session>& closed) {
+                                  sessions_.erase(closed);
+                                  api_.set_client_count(sessions_.size());
+                                });
   sessions_.insert(session);
+  ++counters_.accepted_clients;
   api_.set_client_count(sessions_.size());
   session->start();
 }
 
 void Server::tick() {
+  counters_.unsent_poses = unsent_poses_.load();
   const std::vector<std::shared_ptr<Session>> sessions(sessions_.begin(), sessions_.end());
   for (const auto& session : sessions) session->tick(steady_now_ns());
   timer_.expires_after(kTick);
@@ -184,6 +219,7 @@ void Server::tick() {
 void Server::publish(const std::shared_ptr<const Snapshot>& snapshot) {
   if (poses_posted_.fetch_add(1) >= kMaxPosted) {
     poses_posted_.fetch_sub(1);
+    unsent_poses_.fetch_add(1);
     return;
   }
   boost::asio::post(io_, [this, snapshot] {

@@ -14,6 +14,7 @@
 
 #include "daemon/api.hpp"
 #include "daemon/session.hpp"
+#include "daemon/tls_context.hpp"
 
 namespace glint::daemon {
 
@@ -33,7 +34,7 @@ class Server {
   /// Closes everything; afterwards the io_context has no work of the server.
   void close();
   /// Hands a new pose to the subscribers. From any thread; does not wait. When the main thread is
-  /// far behind, the pose is left out: what is missed is counted by nobody but seen in frame_id.
+  /// far behind, the pose is left out, and counted.
   void publish(const std::shared_ptr<const Snapshot>& snapshot);
 
   /// Port of the TCP server; 0 if there is none.
@@ -47,19 +48,26 @@ class Server {
   void listen_unix(const std::string& path);
   template <class Acceptor>
   void accept(Acceptor& acceptor);
-  void admit(Session::Socket socket);
+  void admit(Connection::Socket socket, bool is_tcp);
+  void refuse(Connection::Socket socket, const std::string& why);
+  [[nodiscard]] std::size_t most_without_token() const;
   void tick();
 
   boost::asio::io_context& io_;
   Api& api_;
   const std::size_t max_clients_;
-  const SessionLimits limits_;
+  const Access access_;
+  const std::unique_ptr<boost::asio::ssl::context> tls_;  ///< Null: TCP goes without.
+  ServerCounters counters_;
+  const SessionContext context_;
+  bool tcp_asks_token_ = false;
   boost::asio::ip::tcp::acceptor tcp_;
   boost::asio::local::stream_protocol::acceptor unix_;
   std::string unix_path_;
   boost::asio::steady_timer timer_;
   std::set<std::shared_ptr<Session>> sessions_;
   std::atomic<int> poses_posted_{0};
+  std::atomic<std::uint64_t> unsent_poses_{0};
   bool closed_ = false;
 };
 

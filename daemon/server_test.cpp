@@ -26,6 +26,33 @@ TEST(ServerTest, AFirstLineThatIsNoJsonGetsOneErrorAndAClose) {
   EXPECT_THROW(client.next_message(5s), ClientError);
 }
 
+TEST(ServerTest, BytesOfAnotherProtocolNeedNoLineFeedToBeRefused) {
+  TestDaemon daemon;
+  Client client(daemon.address());
+  client.send_raw(std::string_view("\x16\x03\x01\x02\x00\x01", 6));
+  EXPECT_EQ(client.next_message(5s)["error"]["code"], kParseError);
+  EXPECT_THROW(client.next_message(5s), ClientError);
+  EXPECT_TRUE(daemon.wait_for("get_status",
+                              [](const Json& s) { return s["server"]["junk_clients"] == 1; }));
+}
+
+TEST(ServerTest, RequestsBeyondTheRateWaitAndAreAllAnswered) {
+  Config config;
+  config.server.max_requests_per_s = 20;
+  TestDaemon daemon(config);
+  Client fast(daemon.address());
+  std::string requests;
+  for (int i = 0; i < 40; ++i) {
+    requests += "{\"id\":" + std::to_string(i) + ",\"method\":\"get_pose\"}\n";
+  }
+  const auto begin = std::chrono::steady_clock::now();
+  fast.send_raw(requests);
+  for (int i = 0; i < 40; ++i) EXPECT_EQ(fast.next_message(5s)["id"], i);
+  EXPECT_GT(std::chrono::steady_clock::now() - begin, 900ms) << "20 at once, 20 in the next second";
+  Client other(daemon.address());
+  EXPECT_GT(other.call("get_status")["server"]["throttled_requests"], 0);
+}
+
 TEST(ServerTest, LaterJunkGetsAnErrorAndTheConnectionLives) {
   TestDaemon daemon;
   Client client(daemon.address());
@@ -92,6 +119,7 @@ TEST(ServerTest, OneClientTooManyGetsAnErrorAndTheOthersLive) {
 TEST(ServerTest, AClientThatReadsNothingIsDisconnectedAndSlowsNobody) {
   Config config;
   config.server.outbox_bytes = 1 << 16;
+  config.server.max_requests_per_s = 1e6;
   TestDaemon daemon(config);
   Client slow(daemon.address());
   std::string requests;
@@ -102,8 +130,9 @@ TEST(ServerTest, AClientThatReadsNothingIsDisconnectedAndSlowsNobody) {
   } catch (const ClientError&) {
     // Already disconnected.
   }
-  EXPECT_TRUE(daemon.wait_for("get_status", [](const Json& s) { return s["clients"] == 1; }))
-      << "only the asking client is left";
+  EXPECT_TRUE(daemon.wait_for("get_status", [](const Json& s) {
+    return s["clients"] == 1 && s["server"]["slow_clients"] == 1;
+  })) << "only the asking client is left";
 }
 
 TEST(ServerTest, AnIdleClientIsClosedAndASubscribedOneIsNot) {
@@ -114,7 +143,7 @@ TEST(ServerTest, AnIdleClientIsClosedAndASubscribedOneIsNot) {
   Client subscribed(daemon.address());
   subscribed.call("subscribe", {{"topics", {"pose"}}});
   EXPECT_THROW(idle.next_message(5s), ClientError);
-  EXPECT_NO_THROW(subscribed.call("get_pose"));
+  EXPECT_EQ(subscribed.call("get_status")["server"]["idle_clients"], 1);
 }
 
 TEST(ServerTest, APortInUseIsASentenceThatNamesTheKey) {
@@ -188,7 +217,8 @@ class SubscriptionsTest : public testing::Test {
   boost::asio::io_context io_;
   TestDaemon daemon_;
   Api api_{io_, daemon_.runtime(), Config{}};
-  Subscriptions subscriptions_{api_};
+  ServerCounters counters_;
+  Subscriptions subscriptions_{api_, counters_};
 };
 
 TEST_F(SubscriptionsTest, ASlowClientMissesTheOldestAndIsToldHowMany) {

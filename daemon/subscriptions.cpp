@@ -113,6 +113,7 @@ void Subscriptions::offer(const std::shared_ptr<const Snapshot>& snapshot) {
   if (pose_->waiting.size() == kMaxWaiting) {
     pose_->waiting.pop_front();
     ++pose_->missed;
+    ++counters_.missed_notifications;
   }
   pose_->waiting.push_back({pose_->seq++, snapshot});
 }
@@ -122,7 +123,10 @@ void Subscriptions::tick(std::int64_t now_ns) {
   status_->next_due_ns += status_->period_ns;
   if (status_->next_due_ns <= now_ns) status_->next_due_ns = now_ns + status_->period_ns;
   // The status is made when it is sent, so one that still waits is replaced by the newer one.
-  if (std::exchange(status_->waiting, true)) ++status_->missed;
+  if (std::exchange(status_->waiting, true)) {
+    ++status_->missed;
+    ++counters_.missed_notifications;
+  }
   ++status_->seq;
 }
 
@@ -140,6 +144,7 @@ std::optional<std::string> Subscriptions::next_event() {
   if (!event) return std::nullopt;
   const std::uint64_t number = events_->next - 1;
   events_->missed += number - wanted;
+  counters_.missed_notifications += number - wanted;
   Json params{{"sensor", event->sensor}, {"kind", std::move(event->kind)}};
   params.update(event->fields);
   params["seq"] = number - events_->begin;

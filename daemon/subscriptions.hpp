@@ -10,6 +10,7 @@
 
 #include "daemon/api.hpp"
 #include "daemon/protocol_pose.hpp"
+#include "daemon/server_counters.hpp"
 #include "daemon/snapshot.hpp"
 
 namespace glint::daemon {
@@ -19,7 +20,8 @@ namespace glint::daemon {
 /// told how many it missed. Lives on the main thread.
 class Subscriptions {
  public:
-  explicit Subscriptions(const Api& api) : api_(api) {}
+  /// `counters` takes what is missed.
+  Subscriptions(const Api& api, ServerCounters& counters) : api_(api), counters_(counters) {}
 
   /// subscribe and unsubscribe; the result is the echo of what is now in effect. @throws RpcError.
   Json subscribe(const Json& params);
@@ -69,6 +71,7 @@ class Subscriptions {
   std::optional<std::string> next_event();
 
   const Api& api_;
+  ServerCounters& counters_;
   std::optional<PoseTopic> pose_;
   std::optional<StatusTopic> status_;
   std::optional<EventTopic> events_;
