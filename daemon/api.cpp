@@ -10,6 +10,7 @@
 #include <random>
 
 #include "daemon/map_saving.hpp"
+#include "daemon/metrics_text.hpp"
 #include "daemon/protocol_map.hpp"
 #include "daemon/protocol_place.hpp"
 #include "daemon/sensor_link.hpp"
@@ -21,12 +22,12 @@ namespace {
 
 /// What hello announces: only what works.
 constexpr std::array kFeatures = {
-    "authenticate",   "get_pose",         "get_pose.at_ns",   "get_pose.predict_ms",
-    "get_status",     "get_map",          "get_trajectory",   "get_config",
-    "subscribe.pose", "subscribe.status", "subscribe.events", "unsubscribe",
-    "pause",          "resume",           "reset_odometry",   "save_map",
-    "list_maps",      "delete_map",       "load_map",         "clear_map",
-    "relocalize",     "set_initial_pose"};
+    "authenticate", "get_pose",       "get_pose.at_ns",   "get_pose.predict_ms",
+    "get_status",   "get_metrics",    "get_map",          "get_trajectory",
+    "get_config",   "subscribe.pose", "subscribe.status", "subscribe.events",
+    "unsubscribe",  "pause",          "resume",           "reset_odometry",
+    "save_map",     "list_maps",      "delete_map",       "load_map",
+    "clear_map",    "relocalize",     "set_initial_pose"};
 
 /// Tells one run of the daemon from the next.
 std::string random_instance() {
@@ -87,9 +88,10 @@ Api::Method Api::find_method(std::string_view name) {
     std::string_view name;
     Method method;
   };
-  static constexpr std::array<Entry, 12> kMethods = {
+  static constexpr std::array<Entry, 13> kMethods = {
       {{"get_pose", &Api::call_get_pose},
        {"get_status", &Api::call_get_status},
+       {"get_metrics", &Api::call_get_metrics},
        {"get_trajectory", &Api::call_get_trajectory},
        {"get_config", &Api::call_get_config},
        {"pause", &Api::call_pause},
@@ -186,6 +188,13 @@ Json Api::status() const {
   return status_json(runtime_.status(), service, steady_now_ns());
 }
 
+std::string Api::metrics() const { return metrics_text(status(), all_stages(runtime_.status())); }
+
+std::string Api::health_problem() const {
+  if (std::string fault = runtime_.fault(); !fault.empty()) return fault;
+  return runtime_.alive(kThreadLimitNs) ? "" : "a thread has given no sign of life for ten seconds";
+}
+
 Json Api::pose(const Snapshot& snapshot, PoseFrames frames) const {
   return newest_pose_json(snapshot, frames, context(), steady_now_ns());
 }
@@ -204,6 +213,13 @@ Json Api::call_get_pose(const Json& params) {
 }
 
 Json Api::call_get_status(const Json&) { return status(); }
+
+Json Api::call_get_metrics(const Json&) {
+  Json out = head();
+  out["content_type"] = "text/plain; version=0.0.4";
+  out["text"] = metrics();
+  return out;
+}
 
 Json Api::call_get_trajectory(const Json& params) {
   return get_trajectory(params, *runtime_.snapshot(), context(), steady_now_ns());

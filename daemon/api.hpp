@@ -36,6 +36,10 @@ class Api {
   /// The first line of a connection. `asks_token`: nothing but authenticate works before it.
   [[nodiscard]] std::string hello_line(bool asks_token) const;
   [[nodiscard]] Json status() const;
+  /// The status for Prometheus, see metrics_text().
+  [[nodiscard]] std::string metrics() const;
+  /// Why the daemon is not well; empty when all of its threads live.
+  [[nodiscard]] std::string health_problem() const;
   [[nodiscard]] Json pose(const Snapshot& snapshot, PoseFrames frames) const;
   /// sensor, state and time: what every answer has.
   [[nodiscard]] Json head() const;
@@ -68,6 +72,7 @@ class Api {
 
   Json call_get_pose(const Json& params);
   Json call_get_status(const Json& params);
+  Json call_get_metrics(const Json& params);
   Json call_get_trajectory(const Json& params);
   Json call_get_config(const Json& params);
   Json call_pause(const Json& params);

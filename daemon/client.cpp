@@ -15,6 +15,7 @@
 #include <cstring>
 #include <memory>
 
+#include "daemon/client_tls.hpp"
 #include "daemon/host_port.hpp"
 
 namespace glint::daemon {
@@ -28,30 +29,26 @@ std::string cannot_reach(const std::string& target, const std::string& why) {
       "cannot reach glintd at {}: {}; is it running? (--connect names another place)", target, why);
 }
 
-/// A send or a connect that hangs for so long fails with EAGAIN.
+/// A send, a receive or a connect that hangs for so long fails with EAGAIN.
 void limit_waits(int socket) {
   const timeval limit{kReplyTimeout.count() / 1000, 0};
   setsockopt(socket, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);
+  setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
 }
 
 }  // namespace
 
-Client::Client(const std::string& target) : target_(target) {
-  if (target.find('/') != std::string::npos) {
+Client::Client(const std::string& target, const ClientSecurity& security) : target_(target) {
+  const bool is_path = target.find('/') != std::string::npos;
+  if (is_path) {
     connect_unix(target);
   } else {
     connect_tcp(target);
   }
   try {
-    const Json message = next_message(kReplyTimeout);
-    if (message.contains("error")) {
-      throw ClientError(fmt::format("glintd at {} refuses the connection: {}", target_,
-                                    message["error"].value("message", "")));
-    }
-    if (message.value("method", "") != "hello") {
-      throw ClientError(cannot_reach(target_, "what answers there is no glintd"));
-    }
-    hello_ = message.at("params");
+    if (!is_path) shake_hands(security);
+    take_hello();
+    if (hello_.value("authentication", "none") == "token") authenticate(security.token);
   } catch (...) {
     ::close(socket_);
     throw;
@@ -59,6 +56,37 @@ Client::Client(const std::string& target) : target_(target) {
 }
 
 Client::~Client() { ::close(socket_); }
+
+void Client::shake_hands(const ClientSecurity& security) {
+  if (security.tls_ca_file.empty()) return;
+  try {
+    tls_ =
+        std::make_unique<ClientTls>(socket_, security.tls_ca_file, parse_host_port(target_)->host);
+  } catch (const std::runtime_error& error) {
+    throw ClientError(fmt::format("no TLS with glintd at {}: {}", target_, error.what()));
+  }
+}
+
+void Client::take_hello() {
+  const Json message = next_message(kReplyTimeout);
+  if (message.contains("error")) {
+    throw ClientError(fmt::format("glintd at {} refuses the connection: {}", target_,
+                                  message["error"].value("message", "")));
+  }
+  if (message.value("method", "") != "hello") {
+    throw ClientError(cannot_reach(target_, "what answers there is no glintd"));
+  }
+  hello_ = message.at("params");
+}
+
+void Client::authenticate(const std::string& token) {
+  if (token.empty()) return;
+  try {
+    call("authenticate", {{"token", token}});
+  } catch (const ReplyError& error) {
+    throw ClientError(fmt::format("glintd at {} refuses the token: {}", target_, error.what()));
+  }
+}
 
 void Client::connect_tcp(const std::string& target) {
   const auto place = parse_host_port(target);
@@ -104,7 +132,8 @@ void Client::connect_unix(const std::string& path) {
 
 void Client::send_raw(std::string_view bytes) {
   while (!bytes.empty()) {
-    const ssize_t sent = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    const ssize_t sent =
+        tls_ ? tls_->send(bytes) : ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
     if (sent < 0 && errno == EINTR) continue;
     if (sent < 0) {
       throw ClientError(fmt::format("glintd at {} went away: {}", target_, std::strerror(errno)));
@@ -133,6 +162,10 @@ Json Client::next_message(std::optional<milliseconds> timeout) {
   return message;
 }
 
+std::ptrdiff_t Client::receive(char* buffer, std::size_t size) {
+  return tls_ ? tls_->receive(buffer, size) : ::recv(socket_, buffer, size, 0);
+}
+
 std::string Client::read_line(std::optional<milliseconds> timeout) {
   std::size_t searched = 0;
   while (true) {
@@ -144,15 +177,20 @@ std::string Client::read_line(std::optional<milliseconds> timeout) {
     }
     searched = input_.size();
     pollfd waiting{socket_, POLLIN, 0};
-    const int ready = ::poll(&waiting, 1, timeout ? static_cast<int>(timeout->count()) : -1);
+    const int limit_ms = timeout ? static_cast<int>(timeout->count()) : -1;
+    const int ready = tls_ && tls_->has_pending() ? 1 : ::poll(&waiting, 1, limit_ms);
     if (ready == 0) {
       throw ClientError(
           fmt::format("glintd at {} has not answered for {} ms", target_, timeout->count()));
     }
     std::array<char, 65536> chunk{};
-    const ssize_t got = ready < 0 ? -1 : ::recv(socket_, chunk.data(), chunk.size(), 0);
+    const ssize_t got = ready < 0 ? -1 : receive(chunk.data(), chunk.size());
     if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) throw ClientError(fmt::format("glintd at {} closed the connection", target_));
+    if (got <= 0) {
+      const bool may_want_tls = hello_.is_null() && !tls_;
+      throw ClientError(fmt::format("glintd at {} closed the connection{}", target_,
+                                    may_want_tls ? "; does it want TLS? (--tls-ca FILE)" : ""));
+    }
     input_.append(chunk.data(), static_cast<std::size_t>(got));
   }
 }

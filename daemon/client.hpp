@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -29,12 +30,21 @@ class ReplyError : public std::runtime_error {
   Json error_;
 };
 
+class ClientTls;
+
+/// What a daemon may ask of a client.
+struct ClientSecurity {
+  std::string tls_ca_file;  ///< PEM, vouches for the daemon's certificate; empty: without TLS.
+  std::string token;        ///< Sent where one is asked; empty: none.
+};
+
 /// A blocking connection to glintd. Thread-compatible.
 class Client {
  public:
-  /// `target`: HOST:PORT, or the path of a Unix socket (anything with a slash). Waits for hello.
+  /// `target`: HOST:PORT, or the path of a Unix socket (anything with a slash), which never has
+  /// TLS. Waits for hello, and authenticates where that is asked.
   /// @throws ClientError with a sentence that names the target and what to do.
-  explicit Client(const std::string& target);
+  explicit Client(const std::string& target, const ClientSecurity& security = {});
   ~Client();
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
@@ -51,11 +61,16 @@ class Client {
 
  private:
   void connect_tcp(const std::string& target);
+  void shake_hands(const ClientSecurity& security);
+  void take_hello();
+  void authenticate(const std::string& token);
   void connect_unix(const std::string& path);
+  std::ptrdiff_t receive(char* buffer, std::size_t size);
   std::string read_line(std::optional<std::chrono::milliseconds> timeout);
 
   const std::string target_;
   int socket_ = -1;
+  std::unique_ptr<ClientTls> tls_;  ///< Null without TLS.
   std::string input_;
   Json hello_;
   std::int64_t next_id_ = 1;

@@ -286,6 +286,11 @@ constexpr std::array kKeys{
               "disk takes no more, keyframes still go into graph and session, but map and places "
               "stop growing; tracking goes on. 0: no limit."},
 
+    ConfigKey{"metrics.listen", &at<&Config::metrics, &Config::Metrics::listen>, 0, 0, "", "",
+              "Address and port of HTTP for Prometheus (/metrics) and supervisors (/healthz, "
+              "/readyz), e.g. 127.0.0.1:7789. One that other machines reach asks for a token of "
+              "server.read_token_file. Empty: none, so that two daemons do not want one port."},
+
     ConfigKey{"log.level", &at<&Config::log, &Config::Log::level>, 0, 0, "",
               "debug|info|warn|error", "Least severe message that is logged."},
 };

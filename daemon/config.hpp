@@ -80,6 +80,9 @@ struct Config {
     double search_s = 60.0;
     int memory_mb = 250;
   };
+  struct Metrics {
+    std::string listen;
+  };
   struct Log {
     std::string level = "info";
   };
@@ -90,6 +93,7 @@ struct Config {
   Server server;
   State state;
   Map map;
+  Metrics metrics;
   Log log;
 };
 

@@ -71,9 +71,7 @@ Json duration_json(const DurationStats& stats) {
 
 /// Only stages that have run.
 Json stages_json(const RuntimeStatus& runtime) {
-  StageStats stats = runtime.snapshot->stages;
-  stats[slam::Stage::kBackend] = runtime.map->backend;
-  stats[slam::Stage::kPgo] = runtime.map->pgo;
+  const StageStats stats = all_stages(runtime);
   Json out = Json::object();
   for (std::size_t i = 0; i < slam::kStageCount; ++i) {
     if (stats.stages[i].count == 0) continue;
@@ -108,7 +106,9 @@ Json server_json(const ServerCounters& c) {
               {"forbidden_requests", c.forbidden_requests},
               {"throttled_requests", c.throttled_requests},
               {"missed_notifications", c.missed_notifications},
-              {"unsent_poses", c.unsent_poses}};
+              {"unsent_poses", c.unsent_poses},
+              {"scrapes", c.scrapes},
+              {"refused_scrapes", c.refused_scrapes}};
 }
 
 Json jobs_json(const std::vector<JobReport>& jobs) {
@@ -196,6 +196,13 @@ std::string_view to_string(SourceState state) {
       return "FAILED";
   }
   return "FAILED";
+}
+
+StageStats all_stages(const RuntimeStatus& runtime) {
+  StageStats stats = runtime.snapshot->stages;
+  stats[slam::Stage::kBackend] = runtime.map->backend;
+  stats[slam::Stage::kPgo] = runtime.map->pgo;
+  return stats;
 }
 
 Json status_json(const RuntimeStatus& runtime, const ServiceStatus& service, std::int64_t now_ns) {

@@ -39,6 +39,9 @@ Json packet_health_json(const PacketHealth& health);
 /// The session's own part of get_status.
 Json session_json(const SessionStatus& session, std::int64_t now_ns);
 
+/// Every stage of the pipeline.
+StageStats all_stages(const RuntimeStatus& runtime);
+
 /// get_status and the status notification. `now_ns`: steady clock.
 Json status_json(const RuntimeStatus& runtime, const ServiceStatus& service, std::int64_t now_ns);
 

@@ -23,6 +23,9 @@
 
 namespace glint::daemon {
 
+/// No thread works on one thing for so long.
+constexpr std::int64_t kThreadLimitNs = 10'000'000'000;
+
 struct RuntimeOptions {
   /// The source is a capture: nothing is dropped, the source waits for odometry, odometry for the
   /// back end.

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "daemon/host_port.hpp"
+#include "daemon/listener.hpp"
 #include "daemon/steady_clock.hpp"
 
 namespace glint::daemon {
@@ -23,6 +23,7 @@ using boost::asio::ip::tcp;
 using boost::asio::local::stream_protocol;
 using boost::system::error_code;
 
+constexpr const char* kListenKey = "server.listen";
 constexpr std::chrono::milliseconds kTick{100};
 constexpr std::chrono::seconds kAcceptPause{1};
 /// Poses on their way to the main thread; more only when it hangs.
@@ -79,21 +80,7 @@ Server::~Server() {
 }
 
 void Server::listen_tcp(const std::string& address) {
-  const auto target = parse_host_port(address);
-  if (!target) {
-    throw ConfigError(fmt::format(
-        "server.listen = \"{}\" is no HOST:PORT, e.g. \"127.0.0.1:7788\" or \"[::1]:7788\"",
-        address));
-  }
-  error_code error;
-  tcp::resolver resolver(io_);
-  const auto found =
-      resolver.resolve(target->host, std::to_string(target->port), tcp::resolver::passive, error);
-  if (error) {
-    throw std::runtime_error(
-        fmt::format("server.listen: cannot resolve {}: {}", target->host, error.message()));
-  }
-  const tcp::endpoint endpoint = found.begin()->endpoint();
+  const tcp::endpoint endpoint = resolve_listen(io_, address, kListenKey);
   const bool is_local = endpoint.address().is_loopback();
   if (!is_local && !access_.has_tokens()) {
     throw ConfigError(fmt::format(
@@ -109,16 +96,7 @@ void Server::listen_tcp(const std::string& address) {
         address);
   }
   tcp_asks_token_ = !is_local || access_.is_required();
-  tcp_.open(endpoint.protocol());
-  tcp_.set_option(tcp::acceptor::reuse_address(true));
-  tcp_.bind(endpoint, error);
-  if (!error) tcp_.listen(boost::asio::socket_base::max_listen_connections, error);
-  if (error) {
-    throw std::runtime_error(
-        fmt::format("cannot listen on {}: {}; stop the program that holds the port, or change "
-                    "server.listen (--set server.listen=HOST:PORT)",
-                    address, error.message()));
-  }
+  listen_at(tcp_, endpoint, kListenKey);
 }
 
 void Server::listen_unix(const std::string& path) {

@@ -41,6 +41,8 @@ class Server {
   [[nodiscard]] std::uint16_t tcp_port() const;
   /// Path of the Unix socket; empty if there is none.
   [[nodiscard]] const std::string& unix_path() const { return unix_path_; }
+  [[nodiscard]] const Access& access() const { return access_; }
+  [[nodiscard]] ServerCounters& counters() { return counters_; }
   [[nodiscard]] std::size_t client_count() const { return sessions_.size(); }
 
  private:

@@ -21,6 +21,8 @@ struct ServerCounters {
   std::uint64_t throttled_requests = 0;    ///< Had to wait for server.max_requests_per_s.
   std::uint64_t missed_notifications = 0;  ///< That clients were too slow for.
   std::uint64_t unsent_poses = 0;          ///< That the main thread was too slow for.
+  std::uint64_t scrapes = 0;               ///< HTTP requests to metrics.listen.
+  std::uint64_t refused_scrapes = 0;  ///< Not HTTP, too slow, too large, or too many at a time.
 };
 
 }  // namespace glint::daemon

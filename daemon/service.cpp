@@ -18,8 +18,6 @@ namespace glint::daemon {
 namespace {
 
 constexpr std::int64_t kSupervisionNs = kNsPerSecond;
-/// No thread works on one thing for so long.
-constexpr std::int64_t kThreadLimitNs = 10 * kNsPerSecond;
 constexpr std::uint64_t kMegabyte = 1'000'000;
 
 /// Between two looks: often enough for the watchdog, and for the log.
@@ -50,6 +48,9 @@ Service::Service(boost::asio::io_context& io, const Config& config, Input input,
       server_(io_, api_, config),
       signals_(io_, SIGINT, SIGTERM, SIGHUP),
       timer_(io_) {
+  if (!config.metrics.listen.empty()) {
+    metrics_.emplace(io_, api_, server_.access(), server_.counters(), config.metrics.listen);
+  }
   if (!input.sensor) return;
   sensor_.emplace(io_, runtime_, *input.sensor);
   api_.set_sensor(*sensor_);
@@ -74,12 +75,14 @@ int Service::run() {
   make_room_for_sessions();
   runtime_.start([this](const auto& snapshot) { server_.publish(snapshot); });
   server_.start();
+  if (metrics_) metrics_->start();
   wait_for_signal();
   supervise();
   if (server_.tcp_port() != 0) {
     spdlog::info("serving {} on TCP port {}", runtime_.options().source_name, server_.tcp_port());
   }
   if (!server_.unix_path().empty()) spdlog::info("serving on {}", server_.unix_path());
+  if (metrics_) spdlog::info("serving metrics on port {}", metrics_->port());
   systemd::notify_ready();
   io_.run();
   runtime_.stop();
@@ -152,6 +155,7 @@ void Service::stop(int exit_code) {
   exit_code_ = exit_code;
   systemd::notify_stopping();
   server_.close();
+  if (metrics_) metrics_->close();
   io_.stop();
 }
 

@@ -12,6 +12,7 @@
 #include "daemon/config.hpp"
 #include "daemon/health_log.hpp"
 #include "daemon/input.hpp"
+#include "daemon/metrics_server.hpp"
 #include "daemon/runtime.hpp"
 #include "daemon/sensor_link.hpp"
 #include "daemon/server.hpp"
@@ -46,6 +47,7 @@ class Service {
   std::optional<SensorLink> sensor_;  ///< Null without a session with the sensor.
   Api api_;
   Server server_;
+  std::optional<MetricsServer> metrics_;  ///< Null without metrics.listen.
   boost::asio::signal_set signals_;
   boost::asio::steady_timer timer_;
   HealthLog health_;

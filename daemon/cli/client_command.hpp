@@ -14,9 +14,11 @@ namespace glint::cli {
 struct ClientOptions {
   std::string connect = "127.0.0.1:7788";
   bool json = false;
+  std::string tls_ca_file;
+  std::string token_file;
 };
 
-/// Adds --connect and --json. `options` must outlive the parsing.
+/// Adds --connect, --json, --tls-ca and --token-file. `options` must outlive the parsing.
 void add_client_options(CLI::App& command, ClientOptions& options);
 
 /// Connects and runs `body`. @throws ConnectionError when the daemon cannot be reached.

@@ -35,6 +35,7 @@ void add_record(CLI::App& app);
 void add_doctor(CLI::App& app);
 void add_config(CLI::App& app);
 void add_status(CLI::App& app);
+void add_metrics(CLI::App& app);
 void add_pose(CLI::App& app);
 void add_watch(CLI::App& app);
 void add_map(CLI::App& app);

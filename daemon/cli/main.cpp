@@ -31,6 +31,7 @@ int run(int argc, char** argv) {
   add_doctor(app);
   add_config(app);
   add_status(app);
+  add_metrics(app);
   add_pose(app);
   add_watch(app);
   add_map(app);
