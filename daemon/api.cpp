@@ -11,6 +11,7 @@
 
 #include "daemon/map_saving.hpp"
 #include "daemon/metrics_text.hpp"
+#include "daemon/protocol_image.hpp"
 #include "daemon/protocol_map.hpp"
 #include "daemon/protocol_place.hpp"
 #include "daemon/sensor_link.hpp"
@@ -22,12 +23,15 @@ namespace {
 
 /// What hello announces: only what works.
 constexpr std::array kFeatures = {
-    "authenticate", "get_pose",       "get_pose.at_ns",   "get_pose.predict_ms",
-    "get_status",   "get_metrics",    "get_map",          "get_trajectory",
-    "get_config",   "subscribe.pose", "subscribe.status", "subscribe.events",
-    "unsubscribe",  "pause",          "resume",           "reset_odometry",
-    "save_map",     "list_maps",      "delete_map",       "load_map",
-    "clear_map",    "relocalize",     "set_initial_pose"};
+    "authenticate",   "get_pose",         "get_pose.at_ns",   "get_pose.predict_ms", "get_status",
+    "get_metrics",    "get_image",        "get_map",          "get_trajectory",      "get_config",
+    "subscribe.pose", "subscribe.status", "subscribe.events", "unsubscribe",         "pause",
+    "resume",         "reset_odometry",   "save_map",         "list_maps",           "delete_map",
+    "load_map",       "clear_map",        "relocalize",       "set_initial_pose"};
+
+/// How long a first look waits for a scan, and how much of that the queries of others wait, too.
+constexpr std::int64_t kImageWaitNs = 1'000'000'000;
+constexpr std::chrono::milliseconds kImageStep{10};
 
 /// Tells one run of the daemon from the next.
 std::string random_instance() {
@@ -108,6 +112,7 @@ Api::Method Api::find_method(std::string_view name) {
 
 Api::WorkerMethod Api::find_worker_method(std::string_view name) {
   if (name == "get_map") return &Api::call_get_map;
+  if (name == "get_image") return &Api::call_get_image;
   if (name == "list_maps") return &Api::call_list_maps;
   if (name == "delete_map") return &Api::call_delete_map;
   return nullptr;
@@ -346,6 +351,18 @@ Json Api::call_save_map(const Json& params) {
 Api::WorkerStep Api::call_get_map(const Json& params) {
   return [this, query = parse_map_query(params)]() -> std::optional<Json> {
     return map_page(query, *runtime_.status().map->map);
+  };
+}
+
+Api::WorkerStep Api::call_get_image(const Json& params) {
+  const std::int64_t begin_ns = steady_now_ns();
+  runtime_.scan_tap().ask(begin_ns);
+  return [this, kind = image_kind(params), begin_ns]() -> std::optional<Json> {
+    if (const auto tapped = runtime_.scan_tap().latest(kImageStep)) {
+      return image_json(*tapped, kind);
+    }
+    if (steady_now_ns() - begin_ns < kImageWaitNs) return std::nullopt;
+    throw RpcError(kNotTracking, "no scan came within a second, so there is no image");
   };
 }
 

@@ -88,6 +88,7 @@ class Api {
   Json change_map(const std::string& kind, SessionPlan plan);
   [[noreturn]] void refuse_job() const;
   WorkerStep call_get_map(const Json& params);
+  WorkerStep call_get_image(const Json& params);
   WorkerStep call_list_maps(const Json& params);
   WorkerStep call_delete_map(const Json& params);
   Json post_command(Command command);

@@ -13,6 +13,7 @@
 #include "daemon/commit_request.hpp"
 #include "daemon/map_change.hpp"
 #include "daemon/place_search_slot.hpp"
+#include "daemon/scan_tap.hpp"
 #include "daemon/snapshot.hpp"
 #include "daemon/snapshot_slot.hpp"
 #include "driver/core/packet_source.hpp"
@@ -83,6 +84,7 @@ struct Crossings {
   SnapshotSlot<Snapshot> snapshot;         ///< odometry -> main
   SnapshotSlot<MapState> map;              ///< backend -> main, worker
   SnapshotSlot<SensorInfo> sensor;         ///< main -> backend; null while it is not known
+  ScanTap scan_tap;                        ///< odometry -> worker
   SourceHealth source;                     ///< receive -> main
   ExpectedPackets expected;                ///< main -> receive
   /// Initialization id of the last lidar packet, 0 when it has none: odometry -> main

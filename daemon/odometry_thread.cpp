@@ -179,6 +179,7 @@ void OdometryThread::process(const LidarScan& scan) {
   state_.clock = stream_->clock_model.status();
   estimate.stamp = told_time(estimate.stamp);
   hand_over_keyframe();
+  show(scan, estimate.stamp);
 
   for (std::size_t i = 0; i < slam::kStageCount; ++i) {
     const std::int64_t ns = frontend.stage_times().wall_ns[i];
@@ -231,6 +232,12 @@ void OdometryThread::hand_over_keyframe() {
     crossings_.keyframes.push_drop_oldest(*keyframe);
     state_.dropped_keyframes = crossings_.keyframes.dropped();
   }
+}
+
+void OdometryThread::show(const LidarScan& scan, SensorTime stamp) {
+  if (!crossings_.scan_tap.wanted(steady_now_ns())) return;
+  crossings_.scan_tap.put(std::make_shared<const TappedScan>(
+      TappedScan{scan, stream_->frontend.images().brightness, stream_->info, stamp}));
 }
 
 void OdometryThread::apply_commands() {

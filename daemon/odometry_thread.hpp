@@ -66,6 +66,7 @@ class OdometryThread {
   [[nodiscard]] SensorTime told_time(SensorTime stamp) const;
   void choose_load(double took_s);
   void hand_over_keyframe();
+  void show(const LidarScan& scan, SensorTime stamp);
   void apply_commands();
   void take_correction(const slam::MapCorrection& correction);
   void use_sensor(const UseSensorCommand& use);

@@ -117,6 +117,8 @@ class Runtime {
   void search_place(PlaceSearchRequest request) {
     crossings_.place_search.post(std::move(request));
   }
+  /// The latest scan, for those who want to look at it.
+  [[nodiscard]] ScanTap& scan_tap() { return crossings_.scan_tap; }
   [[nodiscard]] JobBoard& jobs() { return jobs_; }
   /// Brings the session onto the disk as it is now; for the jobs thread, `job` may be given up
   /// meanwhile. False when it was. @throws InputError when the session cannot be written.

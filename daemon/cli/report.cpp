@@ -10,9 +10,9 @@
 #include <string_view>
 
 #include "daemon/base64.hpp"
-#include "daemon/cli/png_writer.hpp"
 #include "daemon/cli/svg_plot.hpp"
 #include "daemon/cli/text_file.hpp"
+#include "daemon/png.hpp"
 
 namespace glint::cli {
 namespace {

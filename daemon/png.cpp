@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright 2026 The Glint Authors
-#include "daemon/cli/png_writer.hpp"
+#include "daemon/png.hpp"
 
 #include <fmt/format.h>
 #include <png.h>
@@ -14,7 +14,7 @@
 
 #include "driver/core/error.hpp"
 
-namespace glint::cli {
+namespace glint {
 
 std::vector<std::byte> encode_png(const Image<std::uint8_t>& image) {
   png_image png{};
@@ -64,4 +64,4 @@ Image<std::uint8_t> grey_preview(const Image<T>& image) {
 template Image<std::uint8_t> grey_preview(const Image<std::uint16_t>&);
 template Image<std::uint8_t> grey_preview(const Image<std::uint32_t>&);
 
-}  // namespace glint::cli
+}  // namespace glint

@@ -8,7 +8,7 @@
 
 #include "driver/core/lidar_scan.hpp"
 
-namespace glint::cli {
+namespace glint {
 
 /// Encodes an 8-bit grey image as PNG, in memory. Thread-safe.
 /// @throws std::runtime_error if the image is empty or memory runs out.
@@ -25,4 +25,4 @@ Image<std::uint8_t> grey_preview(const Image<T>& image);
 extern template Image<std::uint8_t> grey_preview(const Image<std::uint16_t>&);
 extern template Image<std::uint8_t> grey_preview(const Image<std::uint32_t>&);
 
-}  // namespace glint::cli
+}  // namespace glint
