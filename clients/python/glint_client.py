@@ -288,6 +288,15 @@ class Client:
         """The effective configuration: a dictionary for each group of keys."""
         return self.call("get_config")["config"]
 
+    def get_metrics(self):
+        """The daemon's counters as Prometheus reads them, from daemons that have this."""
+        return self.call("get_metrics")["text"]
+
+    def get_image(self, kind):
+        """The latest scan's image ("range", "signal", "reflectivity", "near_ir", "filtered"), the bytes of a PNG file, from
+        daemons that have this."""
+        return base64.b64decode(self.call("get_image", kind=kind)["png"])
+
     def get_trajectory(self, since_ns=None, frame="map", child="sensor"):
         """All past poses later than `since_ns`, oldest first. They are of one map_epoch."""
         params = dict(_given(since_ns=since_ns), frame=frame, child=child)

@@ -298,6 +298,14 @@ class OnOthers(unittest.TestCase):
                     client.clear_map()
             self.assertEqual(["get_status", "get_status", "clear_map"], [r["method"] for r in server.requests])
 
+    def test_images_and_metrics_are_taken_out_of_their_envelope(self):
+        answers = {"get_image": {"kind": "range", "png": "iVBORw0KGgo="}, "get_metrics": {"text": "glint_poses_total 5\n"}}
+        with FakeServer(hello_line(), lambda request: {"result": answers[request["method"]]}) as server:
+            with Client(server.target) as client:
+                self.assertEqual(b"\x89PNG\r\n\x1a\n", client.get_image("range"))
+                self.assertEqual({"kind": "range"}, server.requests[0]["params"])
+                self.assertEqual("glint_poses_total 5\n", client.get_metrics())
+
     def test_a_job_that_failed_is_an_error(self):
         job = {"id": 1, "kind": "save_map", "state": "failed", "progress": 0.5, "error": "the disk is full"}
         with FakeServer(hello_line(), lambda request: {"result": {"jobs": [job]}}) as server:
