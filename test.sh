@@ -4,7 +4,7 @@
 #
 # usage: ./test.sh [--all]
 # Installs what the tests need, builds, and runs them. --all adds those that take long: the README's two
-# commands in a fresh Debian root, longer simulated worlds, and a minute of fuzzing for each parser.
+# commands in a fresh Debian root, longer simulated worlds, the ROS node (with its packages), and a minute of fuzzing for each parser.
 # Captures are looked for in GLINT_DATA_DIR (default ../shared/data); without them their tests skip,
 # or fail where CI=true.
 set -euo pipefail
