@@ -184,6 +184,9 @@ class TheDaemon(unittest.TestCase):
             self.client.wait_for(self.client.save_map(name))
         kinds = set()
         for request, shown in sorted(PAIRS, key=lambda pair: [pair[0]["method"] == late for late in LATE[::-1]]):
+            # That needs a daemon with tokens: access_test.cpp.
+            if shown.get("error", {}).get("data", {}).get("code") == "FORBIDDEN":
+                continue
             with self.subTest(request=json.dumps(request)):
                 reply = self.ask(request)
                 check_message(reply, request["method"])
