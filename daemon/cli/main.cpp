@@ -39,6 +39,9 @@ int run(int argc, char** argv) {
   add_merge(app);
   add_load(app);
   add_relocalize(app);
+  add_trajectory(app);
+  add_control(app);
+  add_wait(app);
   add_save(app);
   add_delete_map(app);
   add_export(app);

@@ -5,10 +5,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <filesystem>
+#include <fstream>
 #include <optional>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "daemon/test_daemon.hpp"
 #include "slam/store/session_reader.hpp"
@@ -47,6 +51,45 @@ class MapsCommand : public slam::test::InDirectory {
   std::atomic<bool> stop_{false};  ///< For a job, which may outlive its test's function.
   std::optional<test::TestDaemon> daemon_;
 };
+
+TEST_F(MapsCommand, TheTrajectoryComesAsAFile) {
+  const fs::path file = directory_ / "way.tum";
+  const CommandResult fetched = glint({"trajectory", "--frame", "odom", "--out", file.string()});
+  ASSERT_EQ(fetched.exit_code, 0) << fetched.out;
+  std::ifstream lines(file);
+  std::string line;
+  std::vector<std::string> all;
+  while (std::getline(lines, line)) all.push_back(line);
+  ASSERT_GE(all.size(), 3U);
+  EXPECT_EQ(std::ranges::count(all.front(), ' '), 7) << all.front();
+  EXPECT_EQ(Json::parse(glint({"trajectory", "--out", file.string(), "--json"}).out)["frame"],
+            "map");
+}
+
+TEST_F(MapsCommand, PauseAndResumeAndWaiting) {
+  const CommandResult placed = glint({"wait", "--timeout", "10", "--json"});
+  ASSERT_EQ(placed.exit_code, 0) << placed.out;
+  EXPECT_TRUE(Json::parse(placed.out).contains("p_m"));
+  ASSERT_EQ(glint({"pause"}).exit_code, 0);
+  EXPECT_TRUE(
+      daemon_->wait_for("get_status", [](const Json& s) { return s["state"] == "PAUSED"; }));
+  const CommandResult late = glint({"wait", "--timeout", "0.5"});
+  EXPECT_EQ(late.exit_code, 1);
+  EXPECT_THAT(late.out, HasSubstr("its state is PAUSED"));
+  ASSERT_EQ(glint({"resume"}).exit_code, 0);
+  EXPECT_TRUE(
+      daemon_->wait_for("get_status", [](const Json& s) { return s["state"] != "PAUSED"; }));
+  EXPECT_EQ(glint({"reset"}).exit_code, 0);
+  ASSERT_EQ(glint({"clear"}).exit_code, 0);
+  EXPECT_TRUE(
+      daemon_->wait_for("get_status", [](const Json& s) { return s["map"]["keyframes"] == 0; }));
+}
+
+TEST_F(MapsCommand, WhoWaitsForADaemonThatIsNotThereIsToldSo) {
+  const CommandResult alone = run_glint({"wait", "--timeout", "0.5", "--connect", "127.0.0.1:1"});
+  EXPECT_EQ(alone.exit_code, 1);
+  EXPECT_THAT(alone.out, HasSubstr("127.0.0.1:1"));
+}
 
 TEST_F(MapsCommand, AMapIsSavedListedAndDeleted) {
   EXPECT_THAT(glint({"maps"}).out, HasSubstr("no maps"));

@@ -18,6 +18,7 @@ done
 [ "$(id -u)" -eq 0 ] || { echo "installed.sh: needs root" >&2; exit 77; }
 
 work=${2:-$(mktemp -d /var/tmp/glint-installed-XXXXXX)}
+mkdir -p "$work"
 root=$work/root
 machine=
 finish() {
@@ -53,14 +54,14 @@ send() { inside glint simulate --world room --seconds 300 --seed 1 --to 127.0.0.
 mirror=$(apt-get indextargets --format '$(SITE)' 'Created-By: Packages' | head -n 1)
 if [ ! -e "$root/etc/debian_version" ]; then
   say "debootstrap into $root"
-  debootstrap --variant=minbase --include=ca-certificates,systemd,systemd-sysv,python3-minimal,procps,lintian \
+  debootstrap --variant=minbase --include=ca-certificates,systemd,systemd-sysv,python3-minimal,procps \
     bookworm "$root" "$mirror" >"$work/debootstrap.log" || { tail "$work/debootstrap.log" >&2; exit 1; }
 fi
 cp "$package" "$root/root/glint.deb"
 install -m 644 "$here/freeze_thread.py" "$root/root/"
 say "installing"
 systemd-nspawn -q -D "$root" --pipe --register=no --keep-unit sh -ec \
-  'apt-get update -qq; DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends /root/glint.deb' \
+  'apt-get update -qq; DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends lintian /root/glint.deb' \
   >"$work/install.log" 2>&1 || { tail -n 30 "$work/install.log" >&2; exit 1; }
 systemd-nspawn -q -D "$root" --pipe --register=no --keep-unit \
   lintian --fail-on error --suppress-tags bad-distribution-in-changes-file /root/glint.deb ||
