@@ -2,11 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 # Copyright 2026 The Glint Authors
 #
-# usage: tests/system/installed.sh PACKAGE.deb [WORK_DIRECTORY]
+# usage: tests/system/installed.sh PACKAGE.deb | --build BUILD_DIRECTORY
 # The package in a fresh Debian 12 that is booted with its own systemd: what operators expect of the service. Needs
 # root, debootstrap and systemd-nspawn; takes some five minutes.
 set -euo pipefail
-package=$(readlink -f "$1")
 here=$(cd "$(dirname "$0")" && pwd)
 
 for tool in debootstrap systemd-nspawn nsenter; do
@@ -17,7 +16,14 @@ for tool in debootstrap systemd-nspawn nsenter; do
 done
 [ "$(id -u)" -eq 0 ] || { echo "installed.sh: needs root" >&2; exit 77; }
 
-work=${2:-$(mktemp -d /var/tmp/glint-installed-XXXXXX)}
+if [ "$1" = --build ]; then
+  cmake --build "$2" --target package >/dev/null
+  package=$(ls -t "$2"/glint_*.deb | head -n 1)
+else
+  package=$(readlink -f "$1")
+fi
+# A root that is there is used again.
+work=${GLINT_INSTALLED_ROOT:-$(mktemp -d /var/tmp/glint-installed-XXXXXX)}
 mkdir -p "$work"
 root=$work/root
 machine=
@@ -25,10 +31,10 @@ finish() {
   local status=$?
   [ $status -eq 0 ] || journal 2>/dev/null | tail -n 40 >&2 || true
   [ -z "$machine" ] || { kill "$machine" 2>/dev/null; wait "$machine" 2>/dev/null; } || true
-  [ -n "${2:-}" ] || rm -rf "$work"
+  [ -n "${GLINT_INSTALLED_ROOT:-}" ] || rm -rf "$work"
   exit $status
 }
-trap 'finish "$@"' EXIT
+trap finish EXIT
 
 say() { echo "installed.sh: $*"; }
 fail() { echo "installed.sh: $*" >&2; exit 1; }
@@ -54,11 +60,10 @@ send() { inside glint simulate --world room --seconds 300 --seed 1 --to 127.0.0.
 mirror=$(apt-get indextargets --format '$(SITE)' 'Created-By: Packages' | head -n 1)
 if [ ! -e "$root/etc/debian_version" ]; then
   say "debootstrap into $root"
-  debootstrap --variant=minbase --include=ca-certificates,systemd,systemd-sysv,python3-minimal,procps \
+  debootstrap --variant=minbase --include=ca-certificates,systemd,systemd-sysv,procps \
     bookworm "$root" "$mirror" >"$work/debootstrap.log" || { tail "$work/debootstrap.log" >&2; exit 1; }
 fi
 cp "$package" "$root/root/glint.deb"
-install -m 644 "$here/freeze_thread.py" "$root/root/"
 say "installing"
 systemd-nspawn -q -D "$root" --pipe --register=no --keep-unit sh -ec \
   'apt-get update -qq; DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends lintian /root/glint.deb' \
@@ -110,7 +115,8 @@ await 60 state_is TRACKING
 say "kill -9: it is started again and tracks"
 
 before=$(property NRestarts)
-inside python3 /root/freeze_thread.py "$(property MainPID)" backend &
+# From outside of the machine: nothing in the product or the root helps with it.
+python3 "$here/freeze_thread.py" "$(pgrep -P "$leader" -x glintd)" backend &
 await 90 restarted "$before"
 journal | grep -q -i watchdog || inside journalctl --no-pager -o cat | grep -q -i "watchdog" || fail "no word of the watchdog"
 say "a thread that hangs: the watchdog has it started again"
