@@ -10,7 +10,7 @@ namespace {
 
 // What odometry errs by on the way from a keyframe to the scans before the next one.
 constexpr double kWayShare = 0.01;
-constexpr double kTurn_rad = 0.002;
+constexpr double kWayTurn_rad = 0.002;
 
 }  // namespace
 
@@ -21,7 +21,7 @@ Eigen::Matrix<double, 6, 6> PlaceCertainty::covariance_at(const Pose& T_odom_sca
   Twist gained = Twist::Zero();
   if (way_m > 0.0) {
     gained.head<3>().setConstant(kWayShare * kWayShare * way_m * way_m);
-    gained.tail<3>().setConstant(kTurn_rad * kTurn_rad);
+    gained.tail<3>().setConstant(kWayTurn_rad * kWayTurn_rad);
   }
   return carried * covariance * carried.transpose() +
          Eigen::Matrix<double, 6, 6>(gained.asDiagonal());

@@ -12,7 +12,7 @@ constexpr int kPoorMotions = 3;
 // Odometry's velocities tell a second's change to some 0.05 m/s.
 constexpr double kSoonest_s = 0.5;
 constexpr double kLongest_s = 2.0;
-constexpr double kWeight_mps2 = 9.80665;
+constexpr double kGravityAtStart_mps2 = 9.80665;
 
 }  // namespace
 
@@ -38,7 +38,7 @@ std::optional<Eigen::Vector3d> StartLevel::add(const Pose& T_odom_from, const Po
   if (since_s_ < kSoonest_s) return std::nullopt;
   done_ = since_s_ >= kLongest_s;
   const Eigen::Vector3d fallen_mps = velocity_mps - first_mps_ - gained_mps_;
-  return kWeight_mps2 * fallen_mps.normalized();
+  return kGravityAtStart_mps2 * fallen_mps.normalized();
 }
 
 }  // namespace glint::slam

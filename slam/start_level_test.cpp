@@ -10,8 +10,8 @@
 namespace glint::slam {
 namespace {
 
-constexpr double kSpan_s = 0.1;
-const Eigen::Vector3d kGravity_mps2(0.98, -0.3, -9.75);  // Odometry began tilted.
+constexpr double kMotion_s = 0.1;
+const Eigen::Vector3d kTiltedGravity_mps2(0.98, -0.3, -9.75);  // Odometry began tilted.
 
 /// A body that walks along x with a gait of 1.3 Hz, as it turns slowly.
 struct Walker {
@@ -28,9 +28,9 @@ struct Walker {
   }
   /// What an IMU feels from one scan to the next, in the frame of the first.
   [[nodiscard]] ImuMotion felt(double t_s) const {
-    const Eigen::Vector3d gained(velocity_mps(t_s + kSpan_s) - velocity_mps(t_s), 0.0, 0.0);
+    const Eigen::Vector3d gained(velocity_mps(t_s + kMotion_s) - velocity_mps(t_s), 0.0, 0.0);
     ImuMotion motion;
-    motion.velocity_mps = at(t_s).rotation.conjugate() * (gained - kSpan_s * kGravity_mps2);
+    motion.velocity_mps = at(t_s).rotation.conjugate() * (gained - kMotion_s * kTiltedGravity_mps2);
     return motion;
   }
 };
@@ -45,19 +45,19 @@ TEST(StartLevel, WhoBeginsInMotionLearnsWhereDownIsInTwoSeconds) {
   int told = 0;
   Eigen::Vector3d last = Eigen::Vector3d::Zero();
   for (int k = 0; k < 40; ++k) {
-    const double t_s = kSpan_s * k;
+    const double t_s = kMotion_s * k;
     const auto down =
-        level.add(walker.at(t_s), walker.at(t_s + kSpan_s), walker.felt(t_s), kSpan_s);
+        level.add(walker.at(t_s), walker.at(t_s + kMotion_s), walker.felt(t_s), kMotion_s);
     if (!down) continue;
     ++told;
     EXPECT_GT(k, 5);
     EXPECT_LT(k, 27);
-    EXPECT_NEAR(down->norm(), kGravity_mps2.norm(), 0.1);
-    EXPECT_LT(angle_rad(*down, kGravity_mps2), 0.02) << k;
+    EXPECT_NEAR(down->norm(), kTiltedGravity_mps2.norm(), 0.1);
+    EXPECT_LT(angle_rad(*down, kTiltedGravity_mps2), 0.02) << k;
     last = *down;
   }
   EXPECT_GT(told, 10);
-  EXPECT_LT(angle_rad(last, kGravity_mps2), 0.004);
+  EXPECT_LT(angle_rad(last, kTiltedGravity_mps2), 0.004);
 }
 
 TEST(StartLevel, WhoBeginsAtRestIsToldNothing) {
@@ -65,19 +65,20 @@ TEST(StartLevel, WhoBeginsAtRestIsToldNothing) {
   StartLevel level;
   Pose there;
   for (int k = 0; k < 3; ++k) {
-    EXPECT_FALSE(level.add(there, there, slow.felt(0.0), kSpan_s));
+    EXPECT_FALSE(level.add(there, there, slow.felt(0.0), kMotion_s));
   }
   const Walker walker;
   for (int k = 3; k < 40; ++k) {
-    const double t_s = kSpan_s * k;
-    EXPECT_FALSE(level.add(walker.at(t_s), walker.at(t_s + kSpan_s), walker.felt(t_s), kSpan_s));
+    const double t_s = kMotion_s * k;
+    EXPECT_FALSE(
+        level.add(walker.at(t_s), walker.at(t_s + kMotion_s), walker.felt(t_s), kMotion_s));
   }
   level.begin();
   bool told = false;
   for (int k = 0; k < 20; ++k) {
-    const double t_s = kSpan_s * k;
-    told |=
-        level.add(walker.at(t_s), walker.at(t_s + kSpan_s), walker.felt(t_s), kSpan_s).has_value();
+    const double t_s = kMotion_s * k;
+    told |= level.add(walker.at(t_s), walker.at(t_s + kMotion_s), walker.felt(t_s), kMotion_s)
+                .has_value();
   }
   EXPECT_TRUE(told) << "a new beginning counts";
 }

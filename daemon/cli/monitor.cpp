@@ -18,14 +18,14 @@ using std::chrono::milliseconds;
 
 constexpr double kPageRate_hz = 4.0;
 /// A daemon that tells nothing for so long, of what it is to tell four times a second, is gone.
-constexpr milliseconds kSilence{3000};
+constexpr milliseconds kMonitorSilence{3000};
 constexpr milliseconds kKeyPeriod{100};
 constexpr int kKeyPeriodsUntilRetry = 10;
 
 void follow(daemon::Client& client, MonitorPage& page, const TerminalScreen& screen) {
   client.call("subscribe", {{"topics", {"pose", "status", "events"}}, {"rate_hz", kPageRate_hz}});
   while (!screen.leaving()) {
-    const Json message = client.next_message(kSilence);
+    const Json message = client.next_message(kMonitorSilence);
     if (!message.contains("method")) continue;
     page.take(message);
     // One drawing for what comes together: the status comes last.

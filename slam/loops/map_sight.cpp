@@ -15,8 +15,8 @@ namespace {
 
 // Keyframes whose points make the surfaces around a scan, and how far away they may have been
 // taken: from farther on they show other rooms.
-constexpr std::size_t kAround = 12;
-constexpr double kReach_m = 15.0;
+constexpr std::size_t kPlacesAround = 12;
+constexpr double kPlaceReach_m = 15.0;
 // Of these so many are asked for keypoints, until one shows enough of the same.
 constexpr std::size_t kAskedForKeypoints = 3;
 // Keypoints that agree on another place than this are of something that looks alike.
@@ -27,7 +27,7 @@ constexpr double kKeypointsOff_rad = 0.2;
 constexpr float kCubesToVoxel = 2.0F;
 constexpr std::size_t kScanPoints = 1000;
 // A scan of which less lies on the map, or not as close, sees something else.
-constexpr double kLeastOverlap = 0.5;
+constexpr double kLeastOnMap = 0.5;
 constexpr double kMostRms_m = 0.09;
 constexpr double kMostRmsShare = 0.25;  // Of the points' spacing.
 
@@ -48,7 +48,8 @@ bool is_near(const Pose& a, const Pose& b) {
 }  // namespace
 
 std::optional<MapFix> MapSight::fix(PlaceShelf& places, const Place& scan, const Pose& guess) {
-  const std::vector<Place> around = places.nearest(guess.translation_m, kAround, kReach_m);
+  const std::vector<Place> around =
+      places.nearest(guess.translation_m, kPlacesAround, kPlaceReach_m);
   if (around.empty()) return std::nullopt;
   // Near the scan, so that floats will do.
   const Pose T_map_base = around.front().T_odom_sensor;
@@ -75,7 +76,7 @@ std::optional<MapFix> MapSight::fix(PlaceShelf& places, const Place& scan, const
       register_on_surfaces(surfaces, sampled(scan.points_m), keypoints, T_base_map * guess);
   const double most_rms_m =
       std::max(kMostRms_m, kMostRmsShare * static_cast<double>(around.front().voxel_m));
-  if (!found.ok || found.overlap < kLeastOverlap || found.rms_m > most_rms_m) return std::nullopt;
+  if (!found.ok || found.overlap < kLeastOnMap || found.rms_m > most_rms_m) return std::nullopt;
   return MapFix{T_map_base * found.T_map_scan, found.covariance, found.overlap, found.rms_m};
 }
 

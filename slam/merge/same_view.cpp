@@ -18,7 +18,7 @@ constexpr double kCellsPerRad = kAzimuths / (2.0 * M_PI);
 // What half a metre of way moves a surface by, seen in one cell.
 constexpr float kSlack_m = 0.5F;
 constexpr float kSlackShare = 0.05F;
-constexpr double kLeastShare = 0.9;
+constexpr double kLeastSameShare = 0.9;
 
 struct Ranges {
   float least_m = std::numeric_limits<float>::infinity();
@@ -90,7 +90,7 @@ bool shows_the_same(std::span<const MapPoint> kept, std::span<const MapPoint> ot
     ++asked;
     found += view.shows(point_m, range_m) ? 1 : 0;
   }
-  return static_cast<double>(found) >= kLeastShare * static_cast<double>(asked);
+  return static_cast<double>(found) >= kLeastSameShare * static_cast<double>(asked);
 }
 
 }  // namespace glint::slam

@@ -11,6 +11,7 @@ import sys
 import time
 
 PTRACE_ATTACH = 16
+WALL = 0x40000000  # Threads, too.
 pid, name = int(sys.argv[1]), sys.argv[2]
 threads = sorted(int(t) for t in os.listdir(f"/proc/{pid}/task"))
 
@@ -26,6 +27,10 @@ libc = ctypes.CDLL(None, use_errno=True)
 libc.ptrace.argtypes = [ctypes.c_long, ctypes.c_long, ctypes.c_void_p, ctypes.c_void_p]
 if libc.ptrace(PTRACE_ATTACH, thread, None, None) != 0:
     sys.exit(f"cannot stop thread {thread}: {os.strerror(ctypes.get_errno())}")
+# A thread that was killed is not gone before who holds it has looked.
 end = time.monotonic() + 120
-while time.monotonic() < end and os.path.exists(f"/proc/{pid}/task/{thread}"):
-    time.sleep(0.5)
+while time.monotonic() < end:
+    ended, status = os.waitpid(thread, os.WNOHANG | WALL)
+    if ended and (os.WIFSIGNALED(status) or os.WIFEXITED(status)):
+        break
+    time.sleep(0.2)

@@ -117,7 +117,7 @@ say "kill -9: it is started again and tracks"
 before=$(property NRestarts)
 # From outside of the machine: nothing in the product or the root helps with it.
 python3 "$here/freeze_thread.py" "$(pgrep -P "$leader" -x glintd)" backend &
-await 90 restarted "$before"
+await 75 restarted "$before"
 journal | grep -q -i watchdog || inside journalctl --no-pager -o cat | grep -q -i "watchdog" || fail "no word of the watchdog"
 say "a thread that hangs: the watchdog has it started again"
 
