@@ -44,7 +44,7 @@ struct Shelf {
 TEST(PlaceShelf, APlaceIsReadWhenItIsLookedAtAndStays) {
   Shelf map(20);
   EXPECT_THAT(map.read, testing::IsEmpty());
-  EXPECT_EQ(map.shelf.T_map_sensor(7).translation_m.x(), 7.0);
+  EXPECT_EQ(map.shelf.pose(7).translation_m.x(), 7.0);
   for (int i = 0; i < 2; ++i) {
     const Place place = map.shelf.at(7);
     ASSERT_EQ(place.points_m.size(), 1U);

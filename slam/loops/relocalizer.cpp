@@ -127,7 +127,7 @@ bool Relocalizer::is_expected(const Pose& T_map_sensor, const Pose& T_odom_senso
 std::vector<std::size_t> Relocalizer::near_guess(std::span<const ScoredPlace> found,
                                                  const Pose& T_odom_sensor) const {
   const auto is_near = [&](std::size_t entry) {
-    Pose here = places_.T_map_sensor(entry);
+    Pose here = places_.pose(entry);
     // A keyframe shows all around: it may have looked another way.
     here.rotation = expected_->guess.T_map_sensor.rotation *
                     (expected_->T_odom_first->inverse() * T_odom_sensor).rotation;
