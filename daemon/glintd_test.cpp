@@ -168,7 +168,7 @@ TEST_F(GlintdTest, TwoSensorsOnOnePortReachTheirOwnDaemonsOnly) {
                           HasSubstr("bind address")));
   third.insert(third.end(), {"--set", "sensor.multicast_group=192.0.2.1"});
   EXPECT_EQ(exit_code(third), 78);
-  EXPECT_THAT(log_, HasSubstr("multicast group 192.0.2.1 is none"));
+  EXPECT_THAT(log_, HasSubstr("cannot be '192.0.2.1'; it must be an address of a multicast group"));
 }
 
 TEST_F(GlintdTest, ServesBeforeItsSensorHasPower) {

@@ -32,9 +32,7 @@ class PlaceShelf {
   void add_unread(std::uint64_t keyframe, std::uint32_t segment, const Pose& T_map_sensor);
 
   [[nodiscard]] std::size_t size() const { return places_.size(); }
-  [[nodiscard]] const Pose& pose(std::size_t entry) const {
-    return places_[entry].T_odom_sensor;
-  }
+  [[nodiscard]] const Pose& pose(std::size_t entry) const { return places_[entry].T_odom_sensor; }
   /// The place with all that it shows; copies share that.
   Place at(std::size_t entry);
   /// Those of its segment up to `reach` before and after it, itself among them, in order.

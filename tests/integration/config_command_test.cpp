@@ -41,7 +41,7 @@ TEST(ConfigCommandTest, EveryValueIsPrintedWithWhereItComesFrom) {
   EXPECT_EQ(json["config"]["slam"]["preset"],
             (nlohmann::json{{"value", "paper"}, {"from", file.string() + ":2"}}));
 
-  std::ofstream(drop_in) << "[server]\nmax_clients = 5000\n";
+  std::ofstream(drop_in) << "[server]\nmax_clients = 50000\n";
   const CommandResult bad = run_glint(arguments);
   EXPECT_EQ(bad.exit_code, 3);
   EXPECT_THAT(bad.out, HasSubstr(drop_in.string() + ":2"));
