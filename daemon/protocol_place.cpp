@@ -47,9 +47,9 @@ Eigen::Quaterniond rotation_of(const double* q_xyzw, const char* name) {
 slam::PlaceGuess parse_place_guess(const Json& params, const Pose& T_base_sensor) {
   slam::PlaceGuess guess;
   Pose& pose = guess.T_map_sensor;
-  if (const auto T = numbers_param(params, "T", 7)) {
-    pose.translation_m = Eigen::Map<const Eigen::Vector3d>(T->data());
-    pose.rotation = rotation_of(T->data() + 3, "T");
+  if (const auto whole = numbers_param(params, "T", 7)) {
+    pose.translation_m = Eigen::Map<const Eigen::Vector3d>(whole->data());
+    pose.rotation = rotation_of(whole->data() + 3, "T");
   } else if (const auto p_m = numbers_param(params, "p_m", 3)) {
     pose.translation_m = Eigen::Map<const Eigen::Vector3d>(p_m->data());
     const auto q = numbers_param(params, "q_xyzw", 4);
