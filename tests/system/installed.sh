@@ -160,6 +160,10 @@ inside dpkg -r glint >/dev/null 2>&1
 [ ! -e "$root/usr/bin/glintd" ] || fail "removed, but glintd is there"
 [ -e "$root/etc/glint/glint.toml" ] || fail "removing takes the configuration away"
 [ -d "$root/var/lib/private/glint" ] || fail "removing takes the maps away"
+inside dpkg -i /root/glint.deb >/dev/null 2>&1
+inside systemctl start glintd.service
+await 60 state_is TRACKING
+inside dpkg -r glint >/dev/null 2>&1
 inside dpkg -P glint >/dev/null 2>&1
 [ ! -e "$root/etc/glint/glint.toml" ] && [ ! -e "$root/var/lib/private/glint" ] && [ ! -e "$root/var/lib/glint" ] ||
   fail "something is left after a purge"
