@@ -30,6 +30,8 @@ machine=
 finish() {
   local status=$?
   [ $status -eq 0 ] || journal 2>/dev/null | tail -n 40 >&2 || true
+  # The simulated sensor came from outside: a shutdown would wait for it.
+  [ -z "${leader:-}" ] || inside pkill -KILL -x glint || true
   [ -z "$machine" ] || { kill "$machine" 2>/dev/null; wait "$machine" 2>/dev/null; } || true
   [ -n "${GLINT_INSTALLED_ROOT:-}" ] || rm -rf "$work"
   exit $status
@@ -66,7 +68,7 @@ fi
 cp "$package" "$root/root/glint.deb"
 say "installing"
 systemd-nspawn -q -D "$root" --pipe --register=no --keep-unit sh -ec \
-  'apt-get update -qq; DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends lintian /root/glint.deb' \
+  'dpkg -P glint 2>/dev/null || true; apt-get update -qq; DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends lintian /root/glint.deb' \
   >"$work/install.log" 2>&1 || { tail -n 30 "$work/install.log" >&2; exit 1; }
 systemd-nspawn -q -D "$root" --pipe --register=no --keep-unit \
   lintian --fail-on error --suppress-tags bad-distribution-in-changes-file /root/glint.deb ||
