@@ -75,7 +75,7 @@ void BackendThread::run() {
     if (const auto request = crossings_.place_search.take()) search_anew(*request);
   }
   const slam::MapCorrection before = backend_->correction();
-  backend_->finish();
+  backend_->finish(slam::Ending::kSoon);
   crossings_.session_commit.close(commit_session());
   crossings_.map_change.close();
   tell(before);
@@ -106,7 +106,13 @@ void BackendThread::process(const slam::Keyframe& keyframe) {
 
 void BackendThread::restore_more() {
   const slam::MapCorrection before = backend_->correction();
-  if (backend_->restore_more()) tell(before);
+  const std::uint64_t unreadable = backend_->unreadable_keyframes();
+  if (!backend_->restore_more()) return;
+  tell(before);
+  if (unreadable == 0 && backend_->unreadable_keyframes() > 0) {
+    spdlog::warn("keyframes of {} are damaged; the map lacks what they showed",
+                 plan_.earlier.string());
+  }
 }
 
 void BackendThread::search_anew(const PlaceSearchRequest& request) {
@@ -142,7 +148,7 @@ void BackendThread::change_map(const MapChange& change) {
   const SessionPlan plan_before = std::exchange(plan_, change.plan);
   try {
     std::unique_ptr<slam::Backend> other = make_backend();
-    backend_->finish();
+    backend_->finish(slam::Ending::kSoon);
     backend_ = std::move(other);
   } catch (const std::exception& error) {
     plan_ = plan_before;
@@ -243,6 +249,7 @@ void BackendThread::publish() {
   state->loops_accepted = backend_->loops_accepted();
   state->loops_rejected = backend_->loops_rejected();
   state->restored = backend_->restored();
+  state->unreadable_keyframes = backend_->unreadable_keyframes();
   state->only_read = plan_.use == slam::MapUse::kLocalize;
   state->session_file = backend_->session_file().string();
   state->store_failures = backend_->store_failures();

@@ -77,6 +77,8 @@ constexpr std::array kForms{
          [](const Json& value) { return is_multiplier(value.get<double>()); }},
     Form{"server.listen", "HOST:PORT, such as 127.0.0.1:7788 or [::1]:7788, or empty",
          of_text<[](Text t) { return parse_host_port(t).has_value(); }>},
+    Form{"metrics.listen", "HOST:PORT, such as 127.0.0.1:7789, or empty",
+         of_text<[](Text t) { return parse_host_port(t).has_value(); }>},
     Form{"server.unix_socket", "\"auto\", a path of at most 107 bytes, or empty",
          of_text<[](Text t) { return t.size() < sizeof(sockaddr_un::sun_path); }>},
 };

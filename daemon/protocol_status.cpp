@@ -237,6 +237,9 @@ Json status_json(const RuntimeStatus& runtime, const ServiceStatus& service, std
                     {"disk_mb", static_cast<double>(runtime.map->memory.disk_bytes) * kMbPerByte},
                     {"full", runtime.map->memory.full}};
   if (runtime.map->restored < 1.0) out["map"]["restored"] = runtime.map->restored;
+  if (const auto count = runtime.map->unreadable_keyframes; count > 0) {
+    out["map"]["unreadable_keyframes"] = count;
+  }
   out["counters"] = counters_json(runtime);
   out["counters"]["sessions_removed"] = service.sessions_removed;
   out["stage_ms"] = stages_json(runtime);

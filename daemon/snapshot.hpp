@@ -74,7 +74,8 @@ struct MapState {
   std::uint64_t loops_rejected = 0;
   std::string session_file;  ///< Empty: no session is kept, or none yet.
   double restored = 1.0;     ///< Of an earlier map, how much is there.
-  bool only_read = false;    ///< Nothing is added to the map: the sensor is followed in it.
+  std::uint64_t unreadable_keyframes = 0;
+  bool only_read = false;  ///< Nothing is added to the map: the sensor is followed in it.
   std::uint64_t store_failures = 0;
   std::string store_error;
 };

@@ -120,17 +120,22 @@ void Backend::leave_out_moving(Keyframe& keyframe) {
   if (config_.moving_objects) keyframe.points = moving_.standing(keyframe);
 }
 
-void Backend::finish() {
+void Backend::finish(Ending ending) {
   times_ = {};
   const StageTimer timer(clock_, times_, Stage::kBackend);
   loop_reports_.clear();
   go_on_unfound();
+  bool changed = restoring_.has_value();
+  while (ending == Ending::kWhole && restoring_) restore_some(kRestoredWithEach);
   if (search_ && search_->found) {
-    while (restore_more()) {
-    }
+    settle_down();
+    changed = true;
   }
   if (loops_waiting_) {
     settle();
+    changed = true;
+  }
+  if (changed) {
     store_changes();
     publish();
   }

@@ -36,6 +36,12 @@ enum class MapUse {
   kLocalize,  ///< It is only read: the sensor's place in it is told, and no session is kept.
 };
 
+/// How a back end ends.
+enum class Ending {
+  kWhole,  ///< The map is whole afterwards, which may take minutes after a large one was loaded.
+  kSoon,   ///< What is known is in the session; the map is not to be asked for any more.
+};
+
 /// In which map the sensor is being looked for.
 enum class MapSearch { kNone, kEarlierMap, kOwnMap, kMapOnlyRead };
 
@@ -90,14 +96,17 @@ class Backend {
   void process(const Keyframe& keyframe);
   /// Nothing follows for now: loops that were not worth a correction each get one together, and the
   /// session is brought onto the disk.
-  void finish();
+  void finish(Ending ending = Ending::kWhole);
   /// To be called often while no keyframe comes: what the session holds reaches the disk in time.
   void keep_session();
-  /// The same: more of an earlier session's map is read, which takes some 20 ms. False when all of
-  /// it is there.
+  /// The same: ten more keyframes of an earlier session's map are read. False when all of it is
+  /// there.
   bool restore_more();
   /// How much of it is there, 0 to 1.
   [[nodiscard]] double restored() const;
+  /// Keyframes of it that turned out to be damaged after it was loaded: the map lacks what they
+  /// showed.
+  [[nodiscard]] std::uint64_t unreadable_keyframes() const { return unreadable_; }
   /// The session is on the disk when it returns. False when it could not be written; store_error()
   /// says why.
   [[nodiscard]] bool commit_session() { return !store_ || store_->commit(); }
@@ -145,7 +154,7 @@ class Backend {
   /// An earlier session of which not all is in the map yet.
   struct Restoring {
     std::shared_ptr<const SessionReader> session;
-    std::uint64_t next = 0;  ///< The first keyframe that is not.
+    std::size_t done = 0;    ///< Of its keyframes, which are the graph's.
     bool as_stored = false;  ///< Its points need no look for what moves.
   };
 
@@ -159,6 +168,7 @@ class Backend {
   Relocalizer knowing_places(const std::shared_ptr<const SessionReader>& session,
                              const std::function<void(const KeyframeOutline&)>& visit);
   void restore_some(std::size_t keyframes);
+  void restore(const SessionKeyframe& stored);
   [[nodiscard]] std::optional<BagOfWords> words_of(const Keyframe& keyframe) const;
   void search_place(const Keyframe& keyframe);
   void wait_for_map(const Keyframe& keyframe);
@@ -196,8 +206,9 @@ class Backend {
   std::string no_session_because_;            ///< Why there is none after the place was found.
   std::shared_ptr<const SensorInfo> sensor_;  ///< For a session that is yet to be made.
   std::optional<Restoring> restoring_;        ///< While the map is not whole.
-  std::optional<PlaceSearch> search_;         ///< While the sensor's place is not known.
-  std::optional<MapLocalizer> localizer_;     ///< Of a map that is only read.
+  std::uint64_t unreadable_ = 0;
+  std::optional<PlaceSearch> search_;      ///< While the sensor's place is not known.
+  std::optional<MapLocalizer> localizer_;  ///< Of a map that is only read.
   /// What makes the numbers of keyframes and segments those of the map.
   std::uint64_t first_keyframe_ = 0;
   std::uint32_t first_segment_ = 0;

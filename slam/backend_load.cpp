@@ -114,7 +114,9 @@ void Backend::settle_down() {
   const Found found = *std::move(search_->found);
   const std::filesystem::path session = search_->session;
   std::vector<Keyframe> waiting = std::move(search_->waiting);
+  const bool whole = !restoring_;
   // Nobody reads the session any more when it is written.
+  restoring_.reset();
   search_.reset();
   if (session.empty()) {
     set_apart(waiting);
@@ -126,7 +128,7 @@ void Backend::settle_down() {
     const Pose T_map_sensor = T_map_odom * keyframe.estimate.T_odom_sensor;
     graph_.add_at(keyframe, T_map_sensor);
     leave_out_moving(keyframe);
-    map_->insert(T_map_sensor, keyframe.points);
+    if (whole) map_->insert(T_map_sensor, keyframe.points);
     if (store_) store_->add(keyframe, T_map_sensor, words_of(keyframe));
     if (loops_.remember) loops_.remember(keyframe);
   }

@@ -5,6 +5,7 @@
 // since all that its keyframes show takes long to read, some of them at a time.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "driver/core/error.hpp"
@@ -79,7 +80,7 @@ Relocalizer Backend::restore(const std::filesystem::path& file) {
   });
   for (const LoopEdge& loop : session->loop_edges()) graph_.restore_loop(loop);
   const bool without_moving =
-      !config_.moving_objects || session->meta("moving_objects") == "removed";
+      !config_.moving_objects || moving_in_session(*session) == MovingInSession::kRemoved;
   restoring_ = Restoring{std::move(session), 0, without_moving};
   restore_some(kRestoredAtOnce);
   return relocalizer;
@@ -87,19 +88,31 @@ Relocalizer Backend::restore(const std::filesystem::path& file) {
 
 // The map and what finds loops are made of the next keyframes.
 void Backend::restore_some(std::size_t keyframes) {
-  std::size_t read = 0;
-  restoring_->session->for_some_keyframes(
-      restoring_->next, keyframes, [&](SessionKeyframe&& stored) {
-        if (alive_) alive_();
-        const Keyframe& keyframe = stored.keyframe;
-        map_->insert(stored.T_map_sensor,
-                     restoring_->as_stored ? keyframe.points : moving_.standing(keyframe));
-        if (loops_.remember) loops_.remember(keyframe);
-        restoring_->next = keyframe.id + 1;
-        ++read;
-      });
+  Restoring& rest = *restoring_;
+  const std::size_t end = std::min(graph_.nodes().size(), rest.done + keyframes);
+  try {
+    if (rest.done < end) {
+      rest.session->for_some_keyframes(graph_.nodes()[rest.done].id, end - rest.done,
+                                       [this](SessionKeyframe&& stored) { restore(stored); });
+    }
+  } catch (const InputError&) {
+    // A load is refused for it; later, the rest is still worth having.
+    if (!search_ && !localizer_) throw;
+    map_->skip_view(0);
+    ++rest.done;
+    ++unreadable_;
+  }
   keep_within_memory();
-  if (read < keyframes || restoring_->next >= first_keyframe_) restoring_.reset();
+  if (rest.done >= graph_.nodes().size()) restoring_.reset();
+}
+
+void Backend::restore(const SessionKeyframe& stored) {
+  if (alive_) alive_();
+  const Keyframe& keyframe = stored.keyframe;
+  map_->insert(stored.T_map_sensor,
+               restoring_->as_stored ? keyframe.points : moving_.standing(keyframe));
+  if (loops_.remember) loops_.remember(keyframe);
+  ++restoring_->done;
 }
 
 bool Backend::restore_more() {
@@ -113,8 +126,8 @@ bool Backend::restore_more() {
 }
 
 double Backend::restored() const {
-  if (!restoring_ || first_keyframe_ == 0) return 1.0;
-  return static_cast<double>(restoring_->next) / static_cast<double>(first_keyframe_);
+  if (!restoring_ || graph_.nodes().empty()) return 1.0;
+  return static_cast<double>(restoring_->done) / static_cast<double>(graph_.nodes().size());
 }
 
 }  // namespace glint::slam

@@ -6,87 +6,55 @@
 #include <sqlite3.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <tuple>
+#include <string>
 #include <vector>
 
 #include "slam/backend.hpp"
-#include "slam/loops/test_gallery.hpp"
 #include "slam/store/database.hpp"
 #include "slam/store/session_reader.hpp"
-#include "slam/store/test_session.hpp"
+#include "slam/test_gallery_robot.hpp"
 
 namespace glint::slam {
 namespace {
 
-namespace fs = std::filesystem;
-using PointList = std::vector<std::tuple<float, float, float>>;
-
-PointList points_of(const MapSnapshot& snapshot) {
-  PointList points;
-  for (const auto& tile : snapshot.tiles) {
-    for (const MapPoint& point : tile->points) points.emplace_back(point.x_m, point.y_m, point.z_m);
-  }
-  std::ranges::sort(points);
-  return points;
-}
-
-class BackendRestore : public test::InDirectory {
+class BackendRestore : public test::GalleryRobot {
  protected:
   static constexpr std::uint64_t kMapped = 260;
 
   BackendRestore() {
-    config_.map_voxel_m = 0.2;
-    loops_.search = [](const Keyframe&) { return LoopSearch{}; };
     loops_.remember = [this](const Keyframe& keyframe) { remembered_.push_back(keyframe.id); };
   }
 
   /// Walks ahead through the gallery with small steps, odometry as the map.
   void make_map() {
-    Backend backend(config_, file_, {}, loops_);
-    for (; next_ < kMapped; ++next_) {
+    Backend backend(config_, map_file_, {}, loops_);
+    while (next_ < kMapped) {
       backend.process(seen(gallery_pose(2.0 + 0.07 * static_cast<double>(next_), 0.1, 0.0), {}));
     }
     backend.finish();
-    whole_ = points_of(*backend.snapshot());
     remembered_.clear();
     next_ = 0;
   }
-  Keyframe seen(const Pose& truth, const Pose& T_odom_world) {
-    Keyframe keyframe = gallery_.look(truth, next_, 0.5 * static_cast<double>(next_));
-    keyframe.estimate.sequence = 5 * next_;
-    keyframe.estimate.T_odom_sensor = T_odom_world * truth;
-    keyframe.edge_covariance.diagonal().setConstant(1e-6);
-    return keyframe;
-  }
-  static Pose back_at(int k) { return gallery_pose(14.0 - 0.4 * k, -0.2, M_PI); }
   Keyframe come_back(Backend& backend, int k) {
     const Keyframe keyframe = seen(back_at(k), T_odom_world_);
-    ++next_;
     backend.process(keyframe);
     return keyframe;
   }
-  static double error_m(const Backend& backend, const Keyframe& keyframe, const Pose& truth) {
-    const OdometryEstimate& e = keyframe.estimate;
-    const Pose pose =
-        backend.correction().map_pose(e.segment, static_cast<double>(e.sequence), e.T_odom_sensor);
-    return (pose.translation_m - truth.translation_m).norm();
+  /// Comes back until its place is told, which is before the map is whole.
+  int come_back_until_placed(Backend& backend) {
+    int k = 0;
+    while (k < 8 && !backend.correction().placed) come_back(backend, k++);
+    EXPECT_TRUE(backend.correction().placed);
+    EXPECT_LT(backend.restored(), 1.0);
+    return k;
   }
 
-  SlamConfig config_;
-  LoopSource loops_;
-  TestGallery gallery_;
-  std::uint64_t next_ = 0;
-  PointList whole_;
   std::vector<std::uint64_t> remembered_;
-  const fs::path file_ = directory_ / "map.glint";
-  const fs::path later_ = directory_ / "later.glint";
-  const Pose T_odom_world_{so3_exp({0.0, 0.0, 1.0}), {50.0, -20.0, 3.0}};
 };
 
 TEST_F(BackendRestore, TheMapComesBackSomeKeyframesAtATime) {
   make_map();
-  Backend backend(config_, later_, {}, loops_, file_);
+  Backend backend(config_, later_file_, {}, loops_, map_file_);
   EXPECT_EQ(backend.snapshot()->keyframe_count, kMapped) << "the graph is there at once";
   EXPECT_LT(backend.restored(), 0.5);
   const auto first = backend.snapshot()->point_count;
@@ -104,53 +72,63 @@ TEST_F(BackendRestore, TheMapComesBackSomeKeyframesAtATime) {
 
 TEST_F(BackendRestore, ThePlaceIsToldBeforeTheMapIsWholeAndWhatIsBuiltWaits) {
   make_map();
-  Backend backend(config_, later_, {}, loops_, file_);
-  Keyframe last;
-  int k = 0;
-  for (; k < 8 && !backend.correction().placed; ++k) last = come_back(backend, k);
-  ASSERT_TRUE(backend.correction().placed);
-  ASSERT_LT(backend.restored(), 1.0);
-  EXPECT_LT(error_m(backend, last, back_at(k - 1)), 0.08);
+  Backend backend(config_, later_file_, {}, loops_, map_file_);
+  int k = come_back_until_placed(backend);
   EXPECT_EQ(backend.searching_s(), 0.0);
   EXPECT_EQ(backend.snapshot()->keyframe_count, kMapped);
   EXPECT_EQ(backend.session_file(), "");
+  Keyframe last;
   while (backend.restored() < 1.0) {
     last = come_back(backend, k++);
     EXPECT_LT(error_m(backend, last, back_at(k - 1)), 0.08);
   }
-  EXPECT_EQ(backend.session_file(), later_);
+  EXPECT_EQ(backend.session_file(), later_file_);
   EXPECT_EQ(backend.snapshot()->keyframe_count, kMapped + next_);
   last = come_back(backend, k);
   EXPECT_LT(error_m(backend, last, back_at(k)), 0.08);
   backend.finish();
-  EXPECT_EQ(SessionReader(later_).keyframe_count(), kMapped + next_);
+  EXPECT_EQ(SessionReader(later_file_).keyframe_count(), kMapped + next_);
 }
 
 TEST_F(BackendRestore, AnEndBeforeTheMapIsWholeLosesNothing) {
   make_map();
-  {
-    Backend backend(config_, file_, {}, loops_, file_);
-    for (int k = 0; k < 8 && !backend.correction().placed; ++k) come_back(backend, k);
-    ASSERT_TRUE(backend.correction().placed);
-    ASSERT_LT(backend.restored(), 1.0);
-    backend.finish();
+  std::uint64_t before = kMapped;
+  for (const Ending ending : {Ending::kSoon, Ending::kWhole}) {
+    next_ = 0;
+    Backend backend(config_, map_file_, {}, loops_, map_file_);
+    const auto points = backend.snapshot()->point_count;
+    come_back_until_placed(backend);
+    remembered_.clear();
+    backend.finish(ending);
+    EXPECT_EQ(SessionReader(map_file_).keyframe_count(), before + next_);
+    EXPECT_EQ(SessionReader(map_file_).segments().back().keyframes, next_);
+    EXPECT_FALSE(SessionReader(map_file_).loop_edges().empty());
+    before += next_;
+    if (ending == Ending::kSoon) {
+      EXPECT_LE(remembered_.size(), next_) << "the rest of the map is not read for it";
+    } else {
+      EXPECT_EQ(backend.restored(), 1.0);
+      EXPECT_GT(backend.snapshot()->point_count, points);
+    }
   }
-  EXPECT_EQ(SessionReader(file_).keyframe_count(), kMapped + next_);
+}
+
+TEST_F(BackendRestore, TheMapIsWholeAtTheEndWhereTheSensorWasNotFound) {
+  make_map();
+  Backend backend(config_, later_file_, {}, loops_, map_file_);
+  backend.finish();
+  EXPECT_EQ(backend.restored(), 1.0);
+  EXPECT_EQ(remembered_.size(), kMapped);
 }
 
 TEST_F(BackendRestore, TrackingThatRestartsMeanwhileIsLookedForAnew) {
   make_map();
-  Backend backend(config_, later_, {}, loops_, file_);
-  int k = 0;
-  for (; k < 8 && !backend.correction().placed; ++k) come_back(backend, k);
-  ASSERT_TRUE(backend.correction().placed);
-  ASSERT_LT(backend.restored(), 1.0);
+  Backend backend(config_, later_file_, {}, loops_, map_file_);
+  come_back_until_placed(backend);
   const auto epoch = backend.correction().epoch;
   Keyframe last;
   for (int i = 0; i < 8; ++i) {
-    last = seen(back_at(12 + i), {});
-    last.estimate.segment = 1;
-    ++next_;
+    last = seen(back_at(12 + i), {}, 1);
     backend.process(last);
     if (i == 0) {
       EXPECT_FALSE(backend.correction().placed);
@@ -163,13 +141,43 @@ TEST_F(BackendRestore, TrackingThatRestartsMeanwhileIsLookedForAnew) {
   EXPECT_LT(error_m(backend, last, back_at(19)), 0.08);
 }
 
+TEST_F(BackendRestore, WhatProvesDamagedAfterTheLoadIsSkippedAndCounted) {
+  make_map();
+  {
+    Database database(map_file_.string(), SQLITE_OPEN_READWRITE);
+    database.run("UPDATE clouds SET points = x'00' WHERE keyframe IN (150, 151, 259)");
+  }
+  Backend backend(config_, later_file_, {}, loops_, map_file_);
+  while (backend.restore_more()) {
+  }
+  EXPECT_EQ(backend.restored(), 1.0);
+  EXPECT_EQ(backend.unreadable_keyframes(), 3U);
+  EXPECT_EQ(remembered_.size(), kMapped - 3);
+  Keyframe last;
+  for (int k = 0; k < 8; ++k) last = come_back(backend, k);
+  ASSERT_TRUE(backend.correction().placed);
+  EXPECT_LT(error_m(backend, last, back_at(7)), 0.08);
+  EXPECT_EQ(backend.snapshot()->keyframe_count, kMapped + next_);
+}
+
+TEST_F(BackendRestore, WhatIsDamagedAmongTheFirstRefusesTheLoad) {
+  make_map();
+  {
+    Database database(map_file_.string(), SQLITE_OPEN_READWRITE);
+    database.run("UPDATE clouds SET points = x'00' WHERE keyframe = 5");
+  }
+  const std::string why =
+      test::refusal_of([&] { Backend backend(config_, later_file_, {}, loops_, map_file_); });
+  EXPECT_NE(why.find("the points of keyframe 5"), std::string::npos) << why;
+}
+
 TEST_F(BackendRestore, ASessionWithoutWordsIsFoundInAsWell) {
   make_map();
   {
-    Database database(file_.string(), SQLITE_OPEN_READWRITE);
+    Database database(map_file_.string(), SQLITE_OPEN_READWRITE);
     database.run("DROP TABLE words");
   }
-  Backend backend(config_, later_, {}, loops_, file_);
+  Backend backend(config_, later_file_, {}, loops_, map_file_);
   for (int k = 0; k < 8; ++k) come_back(backend, k);
   EXPECT_TRUE(backend.correction().placed);
 }
@@ -177,24 +185,12 @@ TEST_F(BackendRestore, ASessionWithoutWordsIsFoundInAsWell) {
 TEST_F(BackendRestore, WordsThatNoVocabularyHasAreNotBelieved) {
   make_map();
   {
-    Database database(file_.string(), SQLITE_OPEN_READWRITE);
+    Database database(map_file_.string(), SQLITE_OPEN_READWRITE);
     database.run("UPDATE words SET data = x'ffffffff0000803f'");
   }
-  Backend backend(config_, later_, {}, loops_, file_);
+  Backend backend(config_, later_file_, {}, loops_, map_file_);
   for (int k = 0; k < 8; ++k) come_back(backend, k);
   EXPECT_TRUE(backend.correction().placed);
-}
-
-TEST_F(BackendRestore, WhatMovedIsNotInTheSessionAndTheMapComesBackAsItWas) {
-  config_.moving_objects = true;
-  make_map();
-  EXPECT_EQ(SessionReader(file_).meta("moving_objects"), "removed");
-  Backend backend(config_, later_, {}, loops_, file_);
-  while (backend.restore_more()) {
-  }
-  // The session keeps points to a centimetre.
-  const auto count = static_cast<double>(whole_.size());
-  EXPECT_NEAR(static_cast<double>(backend.snapshot()->point_count), count, 0.05 * count);
 }
 
 }  // namespace

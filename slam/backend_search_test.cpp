@@ -5,62 +5,33 @@
 #include <gtest/gtest.h>
 
 #include "slam/backend.hpp"
-#include "slam/loops/test_gallery.hpp"
 #include "slam/store/session_reader.hpp"
-#include "slam/store/test_session.hpp"
+#include "slam/test_gallery_robot.hpp"
 
 namespace glint::slam {
 namespace {
 
 namespace fs = std::filesystem;
 
-class BackendSearch : public test::InDirectory {
+class BackendSearch : public test::GalleryRobot {
  protected:
-  BackendSearch() {
-    config_.map_voxel_m = 0.2;
-    // Places are found by appearance; what finds loops is not asked.
-    loops_.search = [](const Keyframe&) { return LoopSearch{}; };
-  }
-
   /// Walks ahead through the gallery, odometry as the map.
   void map_gallery(Backend& backend) {
     for (double x_m = 2.0; x_m < 20.0; x_m += 0.5) {
-      backend.process(seen(gallery_pose(x_m, 0.1, 0.0), {}, 0));
+      backend.process(seen(gallery_pose(x_m, 0.1, 0.0), {}));
     }
     backend.finish();
   }
-  Keyframe seen(const Pose& truth, const Pose& T_odom_world, std::uint32_t segment) {
-    Keyframe keyframe = gallery_.look(truth, next_, 0.5 * static_cast<double>(next_));
-    keyframe.estimate.sequence = 5 * next_++;
-    keyframe.estimate.segment = segment;
-    keyframe.estimate.T_odom_sensor = T_odom_world * truth;
-    keyframe.edge_covariance.diagonal().setConstant(1e-6);
-    return keyframe;
-  }
-  static Pose back_at(int k) { return gallery_pose(14.0 - 0.4 * k, -0.2, M_PI); }
-  static double error_m(const Backend& backend, const Keyframe& keyframe, const Pose& truth) {
-    const OdometryEstimate& e = keyframe.estimate;
-    const Pose pose =
-        backend.correction().map_pose(e.segment, static_cast<double>(e.sequence), e.T_odom_sensor);
-    return (pose.translation_m - truth.translation_m).norm();
-  }
-
-  SlamConfig config_;
-  LoopSource loops_;
-  TestGallery gallery_;
-  std::uint64_t next_ = 0;
-  const fs::path file_ = directory_ / "map.glint";
-  const Pose T_odom_world_{so3_exp({0.0, 0.0, 1.0}), {50.0, -20.0, 3.0}};
 };
 
 TEST_F(BackendSearch, AMapThatIsOnlyReadStaysAsItIs) {
   {
-    Backend backend(config_, file_, {}, loops_);
+    Backend backend(config_, map_file_, {}, loops_);
     map_gallery(backend);
   }
-  const std::string bytes = test::read_bytes(file_);
+  const std::string bytes = test::read_bytes(map_file_);
   const std::uint64_t mapped = next_;
-  Backend backend(config_, directory_ / "later.glint", {}, loops_, file_, MapUse::kLocalize);
+  Backend backend(config_, later_file_, {}, loops_, map_file_, MapUse::kLocalize);
   EXPECT_EQ(backend.search(), MapSearch::kMapOnlyRead);
   const auto points = backend.snapshot()->point_count;
   next_ = 0;
@@ -78,12 +49,12 @@ TEST_F(BackendSearch, AMapThatIsOnlyReadStaysAsItIs) {
   EXPECT_EQ(backend.snapshot()->point_count, points);
   EXPECT_EQ(backend.snapshot()->epoch, backend.correction().epoch);
   EXPECT_EQ(backend.session_file(), "");
-  EXPECT_EQ(test::read_bytes(file_), bytes);
+  EXPECT_EQ(test::read_bytes(map_file_), bytes);
   EXPECT_EQ(std::distance(fs::directory_iterator(directory_), {}), 1) << "nothing beside it";
 }
 
 TEST_F(BackendSearch, WhatIsSeenAfterASearchThatWasAskedForIsASegmentOfItsOwn) {
-  Backend backend(config_, file_, {}, loops_);
+  Backend backend(config_, map_file_, {}, loops_);
   map_gallery(backend);
   const std::uint64_t mapped = next_;
   const Keyframe before = seen(back_at(0), {}, 0);
@@ -103,12 +74,12 @@ TEST_F(BackendSearch, WhatIsSeenAfterASearchThatWasAskedForIsASegmentOfItsOwn) {
   EXPECT_LT(error_m(backend, before, back_at(0)), 0.08) << "what was there stays";
   EXPECT_EQ(backend.snapshot()->keyframe_count, mapped + 8);
   backend.finish();
-  EXPECT_EQ(SessionReader(file_).segments().size(), 2U);
-  EXPECT_EQ(SessionReader(file_).keyframe_count(), mapped + 8);
+  EXPECT_EQ(SessionReader(map_file_).segments().size(), 2U);
+  EXPECT_EQ(SessionReader(map_file_).keyframe_count(), mapped + 8);
 }
 
 TEST_F(BackendSearch, ANewSegmentOfOdometryIsLookedForInTheMapThereIs) {
-  Backend backend(config_, file_, {}, loops_);
+  Backend backend(config_, map_file_, {}, loops_);
   backend.search_new_segments();
   map_gallery(backend);
   const std::uint64_t mapped = next_;
@@ -123,12 +94,12 @@ TEST_F(BackendSearch, ANewSegmentOfOdometryIsLookedForInTheMapThereIs) {
   ASSERT_TRUE(backend.correction().placed);
   EXPECT_LT(error_m(backend, last, back_at(7)), 0.08);
   backend.finish();
-  EXPECT_EQ(SessionReader(file_).segments().size(), 2U);
-  EXPECT_EQ(SessionReader(file_).keyframe_count(), mapped + 8);
+  EXPECT_EQ(SessionReader(map_file_).segments().size(), 2U);
+  EXPECT_EQ(SessionReader(map_file_).keyframe_count(), mapped + 8);
 }
 
 TEST_F(BackendSearch, WhereItIsNotFoundTheMapGoesOnAsOdometryHasIt) {
-  Backend backend(config_, file_, {}, loops_);
+  Backend backend(config_, map_file_, {}, loops_);
   map_gallery(backend);
   const std::uint64_t mapped = next_;
   ASSERT_TRUE(backend.search_anew());
@@ -147,11 +118,11 @@ TEST_F(BackendSearch, WhereItIsNotFoundTheMapGoesOnAsOdometryHasIt) {
   EXPECT_EQ(backend.snapshot()->keyframe_count, mapped + 5);
   EXPECT_LT(error_m(backend, last, back_at(4)), 0.01);
   backend.finish();
-  EXPECT_EQ(SessionReader(file_).segments().size(), 1U);
+  EXPECT_EQ(SessionReader(map_file_).segments().size(), 1U);
 }
 
 TEST_F(BackendSearch, WithoutAMapOrASessionThereIsNothingToLookIn) {
-  Backend empty(config_, file_, {}, loops_);
+  Backend empty(config_, map_file_, {}, loops_);
   EXPECT_FALSE(empty.search_anew());
   Backend without(config_, {}, {}, loops_);
   map_gallery(without);

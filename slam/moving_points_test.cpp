@@ -9,6 +9,11 @@
 #include <numbers>
 #include <optional>
 
+#include "slam/backend.hpp"
+#include "slam/store/session_map.hpp"
+#include "slam/store/session_reader.hpp"
+#include "slam/store/test_session.hpp"
+
 namespace glint::slam {
 namespace {
 
@@ -96,6 +101,41 @@ TEST(MovingPoints, AnotherSegmentKnowsNothingOfTheOneBefore) {
   Keyframe next = look(0.0, Eigen::Vector2d(6.0, 0.0));
   next.estimate.segment = 1;
   EXPECT_EQ(moving.standing(next).size(), next.points.size());
+}
+
+class MovingInSessionTest : public test::InDirectory {};
+
+TEST_F(MovingInSessionTest, WhatComesIsNotStoredAndTheSessionsMapIsThatOfTheBackEnd) {
+  SlamConfig config;
+  config.map_voxel_m = 0.2;
+  config.loops = false;
+  Backend backend(config, file_);
+  std::size_t came = 0;
+  const auto thing_at = [](std::uint64_t id) {
+    return Eigen::Vector2d(6.0, -8.0 + 2.0 * static_cast<double>(id));
+  };
+  for (std::uint64_t id = 0; id < 8; ++id) {
+    Keyframe keyframe = look(0.5 * static_cast<double>(id), thing_at(id));
+    keyframe.id = id;
+    keyframe.estimate.sequence = id;
+    keyframe.estimate.stamp.ns = static_cast<std::int64_t>(id) * 500'000'000;
+    keyframe.edge_covariance.diagonal().setConstant(1e-6);
+    if (id > 0) came += on_thing(keyframe, keyframe.points, thing_at(id));
+    backend.process(keyframe);
+  }
+  backend.finish();
+  const SessionReader session(file_);
+  EXPECT_EQ(moving_in_session(session), MovingInSession::kRemoved);
+  std::size_t stored = 0;
+  session.for_each_keyframe([&](SessionKeyframe&& of_session) {
+    const Keyframe& keyframe = of_session.keyframe;
+    if (keyframe.id > 0) stored += on_thing(keyframe, keyframe.points, thing_at(keyframe.id));
+  });
+  EXPECT_GT(came, 1000U);
+  EXPECT_LT(stored, came / 10);
+  // The session keeps points to a centimetre, which takes some to the next voxel.
+  const auto count = static_cast<double>(backend.snapshot()->point_count);
+  EXPECT_NEAR(static_cast<double>(session_map(session)->point_count), count, 0.02 * count);
 }
 
 }  // namespace

@@ -17,7 +17,9 @@
 #include "slam/loops/vocabulary.hpp"
 #include "slam/merge/map_join.hpp"
 #include "slam/merge/merged_view.hpp"
+#include "slam/moving_points.hpp"
 #include "slam/store/session_copy.hpp"
+#include "slam/store/session_map.hpp"
 #include "slam/store/session_store.hpp"
 #include "slam/store/temporary_file.hpp"
 
@@ -79,11 +81,13 @@ void join_all(std::span<const fs::path> files, std::list<Unjoined>& waiting,
 }
 
 void write_meta(const SessionReader& session, SessionStore& store) {
-  for (const char* key : {"preset", "map_voxel_m", "map_max_points", "moving_objects"}) {
+  for (const char* key : {"preset", "map_voxel_m", "map_max_points"}) {
     if (std::string value = session.meta(key); !value.empty()) {
       store.set_meta(key, std::move(value));
     }
   }
+  const bool wanted = moving_in_session(session) == MovingInSession::kWanted;
+  store.set_meta("moving_objects", wanted ? "kept" : "removed");
   store.set_meta("vocabulary_hash", fmt::format("{:016x}", default_vocabulary()->hash()));
 }
 
@@ -117,7 +121,12 @@ void write_keyframes(const MapJoin& map, SessionStore& store, MergeSummary& summ
   std::size_t node = 0;
   for (std::size_t i = 0; i < map.sessions().size(); ++i) {
     PartWriter writer(map.sessions()[i], store);
+    const auto moved = moving_in_session(*map.sessions()[i].session);
+    MovingPoints moving;
     map.sessions()[i].for_each_keyframe([&](SessionKeyframe&& stored) {
+      if (moved == MovingInSession::kToBeLeftOut) {
+        stored.keyframe.points = moving.standing(stored.keyframe);
+      }
       if (view.adds_nothing(node, i, stored.keyframe)) {
         stored.keyframe.points.clear();
         stored.keyframe.features.clear();

@@ -29,8 +29,14 @@ double session_voxel_m(const SessionReader& session) {
   return voxel_m >= kFinestVoxel_m && voxel_m <= kCoarsestVoxel_m ? voxel_m : kUsualVoxel_m;
 }
 
+MovingInSession moving_in_session(const SessionReader& session) {
+  const std::string said = session.meta("moving_objects");
+  if (said == "removed") return MovingInSession::kRemoved;
+  return said == "kept" ? MovingInSession::kWanted : MovingInSession::kToBeLeftOut;
+}
+
 std::shared_ptr<const MapSnapshot> session_map(const SessionReader& session, double voxel_m) {
-  const bool moving_objects = session.meta("moving_objects") != "kept";
+  const bool as_stored = moving_in_session(session) != MovingInSession::kToBeLeftOut;
   // Memory is the limit here: the map is not for a daemon that must go on.
   VoxelMap map(voxel_m > 0.0 ? voxel_m : session_voxel_m(session),
                std::numeric_limits<std::size_t>::max());
@@ -38,8 +44,7 @@ std::shared_ptr<const MapSnapshot> session_map(const SessionReader& session, dou
   std::size_t keyframes = 0;
   session.for_each_keyframe([&](SessionKeyframe&& of_session) {
     const Keyframe& keyframe = of_session.keyframe;
-    map.insert(of_session.T_map_sensor,
-               moving_objects ? moving.standing(keyframe) : keyframe.points);
+    map.insert(of_session.T_map_sensor, as_stored ? keyframe.points : moving.standing(keyframe));
     ++keyframes;
   });
   auto snapshot = map.snapshot();

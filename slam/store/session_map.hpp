@@ -9,6 +9,14 @@
 
 namespace glint::slam {
 
+/// What became of the points of things that moved in a session.
+enum class MovingInSession {
+  kRemoved,      ///< Its keyframes do not have them.
+  kToBeLeftOut,  ///< They do, and a map leaves them out (MovingPoints).
+  kWanted,       ///< They do, and a map has them.
+};
+MovingInSession moving_in_session(const SessionReader& session);
+
 /// The edge of the voxels of its map.
 double session_voxel_m(const SessionReader& session);
 

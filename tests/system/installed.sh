@@ -86,7 +86,7 @@ for _ in $(seq 100); do
   sleep 0.1
 done
 await 60 inside systemctl is-active multi-user.target
-[ "$(inside systemctl is-enabled glintd.service)" = enabled ] || fail "the unit is not enabled"
+[ "$(property ActiveState)" = inactive ] || fail "without a sensor's name the boot leaves the unit $(property ActiveState)"
 
 inside glint simulate --world room --seconds 1 --seed 1 --out /etc/glint/sensor >/dev/null
 mkdir -p "$root/etc/glint/glint.toml.d"
@@ -95,15 +95,18 @@ cat >"$root/etc/glint/glint.toml.d/sensor.toml" <<END
 metadata_file = "/etc/glint/sensor/metadata.json"
 source_address = "127.0.0.1"
 END
-inside systemctl reset-failed glintd.service
-inside systemctl start glintd.service
+inside systemctl -q enable --now glintd.service
 active || fail "the unit does not start without a sensor"
 await 10 answers
 say "READY, and answers while there is no sensor"
 
 send
 await 60 state_is TRACKING
-say "a sensor that appears later is tracked"
+for place in 127.0.0.1:7788 /run/glint/glintd.sock; do
+  inside glint pose --json --connect "$place" | grep '"p_m"' >/dev/null || fail "no pose at $place"
+done
+inside systemctl start glint-wait-localized.service || fail "the unit that waits for the place fails"
+say "a sensor that appears later is tracked; its pose is on both sockets; who waits for it goes on"
 
 for exposure in "$(inside systemd-analyze security glintd.service | sed -n 's/.*exposure level for glintd.service: \([0-9.]*\).*/\1/p')"; do
   say "exposure $exposure"
@@ -120,7 +123,7 @@ before=$(property NRestarts)
 # From outside of the machine: nothing in the product or the root helps with it.
 python3 "$here/freeze_thread.py" "$(pgrep -P "$leader" -x glintd)" backend &
 await 75 restarted "$before"
-inside journalctl --no-pager -o cat | grep -i watchdog >/dev/null || fail "no word of the watchdog"
+journal | grep "glintd.service: Watchdog timeout" >/dev/null || fail "it was not the watchdog"
 say "a thread that hangs: the watchdog has it started again"
 
 cp "$root/etc/glint/glint.toml.d/sensor.toml" "$work/sensor.toml"
@@ -136,10 +139,14 @@ say "a wrong configuration: exit 78, not started again, file and line in the jou
 inside systemctl reset-failed glintd.service
 inside systemctl start glintd.service
 await 10 answers
+process=$(property MainPID)
+printf '[log]\nlevel = "debug"\n' >"$root/etc/glint/glint.toml.d/talk.toml"
 inside systemctl reload glintd.service
-await 10 answers
-active || fail "it does not outlive a reload"
-say "reload"
+told() { journal | grep "$1" >/dev/null; }
+await 10 told "reload: log.level is debug"
+[ "$(property MainPID)" = "$process" ] || fail "it does not outlive a reload"
+rm "$root/etc/glint/glint.toml.d/talk.toml"
+say "reload: the same process does what the configuration says now"
 
 inside systemctl stop glintd.service
 inside mount -t tmpfs -o size=1m,mode=0755 tmpfs /var/lib/private/glint
@@ -153,8 +160,14 @@ say "a full disk: it tracks on, and says so"
 
 inside systemctl start glintd.service
 await 60 state_is TRACKING
-inside dpkg -i /root/glint.deb >/dev/null 2>&1
+process=$(property MainPID)
+dpkg-deb -R "$root/root/glint.deb" "$work/newer"
+sed -i 's/^Version: .*/&+newer/' "$work/newer/DEBIAN/control"
+dpkg-deb -b "$work/newer" "$root/root/newer.deb" >/dev/null
+rm -rf "$work/newer"
+inside dpkg -i /root/newer.deb >/dev/null 2>&1
 await 20 active
+[ "$(property MainPID)" != "$process" ] || fail "the old process goes on after an upgrade"
 await 60 state_is TRACKING
 say "an upgrade while it runs: the new one tracks"
 
@@ -162,12 +175,14 @@ inside dpkg -r glint >/dev/null 2>&1
 [ ! -e "$root/usr/bin/glintd" ] || fail "removed, but glintd is there"
 [ -e "$root/etc/glint/glint.toml" ] || fail "removing takes the configuration away"
 [ -d "$root/var/lib/private/glint" ] || fail "removing takes the maps away"
-inside dpkg -i /root/glint.deb >/dev/null 2>&1
+inside dpkg -i /root/newer.deb >/dev/null 2>&1
+[ "$(inside systemctl is-enabled glintd.service)" = enabled ] || fail "enabled before the removal, not after it"
 inside systemctl start glintd.service
 await 60 state_is TRACKING
 inside dpkg -r glint >/dev/null 2>&1
 inside dpkg -P glint >/dev/null 2>&1
 [ ! -e "$root/etc/glint/glint.toml" ] && [ ! -e "$root/var/lib/private/glint" ] && [ ! -e "$root/var/lib/glint" ] ||
   fail "something is left after a purge"
+[ -z "$(find "$root/etc/systemd" -name '*glint*')" ] || fail "links of units are left after a purge"
 say "remove keeps configuration and maps, purge leaves nothing"
 say "all as operators expect"
