@@ -226,7 +226,8 @@ constexpr std::array kKeys{
         "Empty: no TCP."},
     ConfigKey{
         "server.unix_socket", &at<&Config::server, &Config::Server::unix_socket>, 0, 0, "", "",
-        "Path of the Unix socket. auto: glintd.sock in systemd's RuntimeDirectory, else none."},
+        "Path of the Unix socket. auto: glintd.sock in systemd's RuntimeDirectory, else none. A socket "
+        "that systemd passes (glintd.socket) takes its place, or that of listen."},
     ConfigKey{"server.read_token_file", &at<&Config::server, &Config::Server::read_token_file>, 0,
               0, "", "",
               "File with the tokens of clients that may read, one a line (openssl rand -hex 32). A "

@@ -4,16 +4,19 @@
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 
 #include <algorithm>
 #include <boost/asio/post.hpp>
 #include <chrono>
 #include <cstdlib>
+#include <sstream>
 #include <utility>
 #include <vector>
 
 #include "daemon/listener.hpp"
+#include "daemon/passed_sockets.hpp"
 #include "daemon/steady_clock.hpp"
 
 namespace glint::daemon {
@@ -61,13 +64,22 @@ Server::Server(boost::asio::io_context& io, Api& api, const Config& config)
       tcp_(io),
       unix_(io),
       timer_(io) {
+  const PassedSockets passed = take_passed_sockets();
+  if (passed.tcp >= 0) {
+    adopt_tcp(passed.tcp);
+  } else if (!config.server.listen.empty()) {
+    listen_tcp(config.server.listen);
+  }
   const std::string path =
       resolve_auto(config.server.unix_socket, "RUNTIME_DIRECTORY", "glintd.sock");
-  if (config.server.listen.empty() && path.empty()) {
+  if (passed.unix_stream >= 0) {
+    adopt_unix(passed.unix_stream);
+  } else if (!path.empty()) {
+    listen_unix(path);
+  }
+  if (!tcp_.is_open() && !unix_.is_open()) {
     throw ConfigError("server.listen and server.unix_socket are both empty: nobody could connect");
   }
-  if (!config.server.listen.empty()) listen_tcp(config.server.listen);
-  if (!path.empty()) listen_unix(path);
   api_.set_server_counters(counters_);
 }
 
@@ -81,22 +93,37 @@ Server::~Server() {
 
 void Server::listen_tcp(const std::string& address) {
   const tcp::endpoint endpoint = resolve_listen(io_, address, kListenKey);
+  guard_tcp(endpoint, fmt::format("{} = \"{}\"", kListenKey, address));
+  listen_at(tcp_, endpoint, kListenKey);
+}
+
+void Server::adopt_tcp(int fd) {
+  sockaddr_storage address{};
+  socklen_t size = sizeof address;
+  ::getsockname(fd, reinterpret_cast<sockaddr*>(&address), &size);
+  tcp_.assign(address.ss_family == AF_INET6 ? tcp::v6() : tcp::v4(), fd);
+  std::ostringstream name;
+  name << "ListenStream=" << tcp_.local_endpoint();
+  guard_tcp(tcp_.local_endpoint(), name.str());
+}
+
+// Who reaches the sensor's poses from elsewhere has a token.
+void Server::guard_tcp(const tcp::endpoint& endpoint, const std::string& name) {
   const bool is_local = endpoint.address().is_loopback();
   if (!is_local && !access_.has_tokens()) {
     throw ConfigError(fmt::format(
-        "server.listen = \"{}\" can be reached by other machines, which needs a token: name a file "
+        "{} can be reached by other machines, which needs a token: name a file "
         "with one in server.read_token_file or server.control_token_file, or listen on 127.0.0.1 "
         "and reach it through an SSH tunnel",
-        address));
+        name));
   }
   if (!is_local && !tls_) {
     spdlog::warn(
-        "server.listen = \"{}\": tokens and poses cross the network in the clear; set "
+        "{}: tokens and poses cross the network in the clear; set "
         "server.tls_certificate_file and server.tls_key_file",
-        address);
+        name);
   }
   tcp_asks_token_ = !is_local || access_.is_required();
-  listen_at(tcp_, endpoint, kListenKey);
 }
 
 void Server::listen_unix(const std::string& path) {
@@ -115,6 +142,12 @@ void Server::listen_unix(const std::string& path) {
         fmt::format("cannot listen on {}: {}; change server.unix_socket", path, error.message()));
   }
   unix_path_ = path;
+  unlinks_unix_ = true;
+}
+
+void Server::adopt_unix(int fd) {
+  unix_.assign(stream_protocol(), fd);
+  unix_path_ = unix_.local_endpoint().path();
 }
 
 void Server::start() {
@@ -212,7 +245,7 @@ void Server::close() {
   error_code ignored;
   tcp_.close(ignored);
   unix_.close(ignored);
-  if (!unix_path_.empty()) ::unlink(unix_path_.c_str());
+  if (unlinks_unix_) ::unlink(unix_path_.c_str());
   timer_.cancel();
   const std::vector<std::shared_ptr<Session>> sessions(sessions_.begin(), sessions_.end());
   for (const auto& session : sessions) session->close();

@@ -22,8 +22,9 @@ namespace glint::daemon {
 /// publish().
 class Server {
  public:
-  /// Listens from here on. @throws ConfigError for an address that cannot be used,
-  /// std::runtime_error with one sentence when it is taken.
+  /// Listens from here on, on what systemd passed and else on what the configuration names. @throws
+  /// ConfigError for an address that cannot be used, std::runtime_error with one sentence when it
+  /// is taken.
   Server(boost::asio::io_context& io, Api& api, const Config& config);
   ~Server();
   Server(const Server&) = delete;
@@ -47,7 +48,10 @@ class Server {
 
  private:
   void listen_tcp(const std::string& address);
+  void adopt_tcp(int fd);
+  void guard_tcp(const boost::asio::ip::tcp::endpoint& endpoint, const std::string& name);
   void listen_unix(const std::string& path);
+  void adopt_unix(int fd);
   template <class Acceptor>
   void accept(Acceptor& acceptor);
   void admit(Connection::Socket socket, bool is_tcp);
@@ -66,6 +70,7 @@ class Server {
   boost::asio::ip::tcp::acceptor tcp_;
   boost::asio::local::stream_protocol::acceptor unix_;
   std::string unix_path_;
+  bool unlinks_unix_ = false;  ///< The socket's file is ours, not systemd's.
   boost::asio::steady_timer timer_;
   std::set<std::shared_ptr<Session>> sessions_;
   std::atomic<int> poses_posted_{0};

@@ -31,7 +31,9 @@ inline std::string read_file(const std::filesystem::path& file) {
 /// A glintd on its own, its standard error in a file.
 class Process {
  public:
-  Process(std::vector<std::string> arguments, const std::filesystem::path& directory)
+  /// `passed` are listening sockets that it gets as systemd would hand them over.
+  Process(std::vector<std::string> arguments, const std::filesystem::path& directory,
+          const std::vector<int>& passed = {})
       : log_(directory / "stderr.txt") {
     arguments.insert(arguments.begin(), GLINTD);
     std::vector<char*> argv;
@@ -40,6 +42,7 @@ class Process {
     pid_ = fork();
     if (pid_ != 0) return;
     if (std::freopen(log_.c_str(), "w", stderr) == nullptr) _exit(126);
+    if (!passed.empty()) pass(passed);
     execv(GLINTD, argv.data());
     _exit(127);
   }
@@ -60,6 +63,16 @@ class Process {
   [[nodiscard]] std::string log() const { return read_file(log_); }
 
  private:
+  // In the child: descriptors from 3 on, and who is meant by them, as sd_listen_fds(3) has it.
+  static void pass(const std::vector<int>& sockets) {
+    constexpr int kAside = 100;
+    const int count = static_cast<int>(sockets.size());
+    for (int i = 0; i < count; ++i) dup2(sockets[static_cast<std::size_t>(i)], kAside + i);
+    for (int i = 0; i < count; ++i) dup2(kAside + i, 3 + i);
+    setenv("LISTEN_PID", std::to_string(getpid()).c_str(), 1);
+    setenv("LISTEN_FDS", std::to_string(count).c_str(), 1);
+  }
+
   const std::filesystem::path log_;
   pid_t pid_ = -1;
 };
@@ -73,8 +86,9 @@ class GlintdTest : public testing::Test {
                   testing::UnitTest::GetInstance()->current_test_info()->name());
     std::filesystem::create_directories(directory_);
     // Free of what the test's own surroundings may have set.
-    for (const char* name : {"NOTIFY_SOCKET", "STATE_DIRECTORY", "RUNTIME_DIRECTORY",
-                             "JOURNAL_STREAM", "WATCHDOG_USEC", "WATCHDOG_PID"}) {
+    for (const char* name :
+         {"NOTIFY_SOCKET", "STATE_DIRECTORY", "RUNTIME_DIRECTORY", "JOURNAL_STREAM",
+          "WATCHDOG_USEC", "WATCHDOG_PID", "LISTEN_PID", "LISTEN_FDS"}) {
       unsetenv(name);
     }
   }

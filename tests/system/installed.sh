@@ -149,6 +149,14 @@ rm "$root/etc/glint/glint.toml.d/talk.toml"
 say "reload: the same process does what the configuration says now"
 
 inside systemctl stop glintd.service
+inside mount -t tmpfs -o ro,mode=0755 tmpfs /var/lib/private/glint
+inside systemctl start glintd.service
+await 60 state_is TRACKING
+await 60 sh -c "nsenter --all --target $leader -- glint status --json | grep -q '\"store_failures\":[1-9]'"
+inside systemctl stop glintd.service
+inside umount /var/lib/private/glint
+say "a state directory that is only read: it tracks, and says so"
+
 inside mount -t tmpfs -o size=1m,mode=0755 tmpfs /var/lib/private/glint
 inside systemctl start glintd.service
 await 60 state_is TRACKING
@@ -158,8 +166,20 @@ inside systemctl stop glintd.service
 inside umount /var/lib/private/glint
 say "a full disk: it tracks on, and says so"
 
-inside systemctl start glintd.service
+inside systemctl stop glintd.service
+inside useradd --no-create-home --groups glint operator
+inside useradd --no-create-home stranger
+inside systemctl -q enable --now glintd.socket
+[ "$(property ActiveState)" = inactive ] || fail "the socket's unit starts the service without a client"
+inside runuser -u stranger -- glint status --json --connect /run/glintd.sock >/dev/null 2>&1 && fail "everybody may use the socket"
+[ "$(property ActiveState)" = inactive ] || fail "who may not connect starts the service"
+inside runuser -u operator -- glint status --json --connect /run/glintd.sock >/dev/null ||
+  fail "a member of the group glint is not served by the service it starts"
+active || fail "a client at the socket does not start the service"
 await 60 state_is TRACKING
+inside runuser -u operator -- glint pose --json --connect /run/glintd.sock | grep '"p_m"' >/dev/null || fail "no pose at the socket"
+say "glintd.socket: the group's members are served, and the first of them starts the service"
+
 process=$(property MainPID)
 dpkg-deb -R "$root/root/glint.deb" "$work/newer"
 sed -i 's/^Version: .*/&+newer/' "$work/newer/DEBIAN/control"
