@@ -42,7 +42,7 @@ BackendThread::BackendThread(const Config& config, SessionPlan plan,
       crossings_(crossings),
       heartbeat_(heartbeat),
       events_(events),
-      backend_(make_backend()) {
+      backend_(make_backend_stored_or_not()) {
   tell({}, backend_->correction().placed ? nullptr : "loaded");
 }
 
@@ -53,6 +53,21 @@ std::unique_ptr<slam::Backend> BackendThread::make_backend() const {
       plan_.earlier, plan_.use, [this] { heartbeat_.beat(); });
   if (config_.loops) backend->search_new_segments();
   return backend;
+}
+
+// A disk that takes no new file is no reason to stand still: the robot still needs its pose. An
+// earlier map that cannot be read is one, for going on without it is not what was asked for.
+std::unique_ptr<slam::Backend> BackendThread::make_backend_stored_or_not() {
+  no_session_because_.clear();
+  try {
+    return make_backend();
+  } catch (const InputError& error) {
+    if (plan_.file.empty() || !plan_.earlier.empty()) throw;
+    no_session_because_ = error.what();
+    spdlog::error("no session is kept: {}", no_session_because_);
+    plan_.file.clear();
+    return make_backend();
+  }
 }
 
 void BackendThread::run() {
@@ -150,6 +165,7 @@ void BackendThread::change_map(const MapChange& change) {
     std::unique_ptr<slam::Backend> other = make_backend();
     backend_->finish(slam::Ending::kSoon);
     backend_ = std::move(other);
+    no_session_because_.clear();
   } catch (const std::exception& error) {
     plan_ = plan_before;
     return change.job->fail(error.what());
@@ -168,13 +184,7 @@ void BackendThread::begin_another_map() {
   const std::vector<slam::Keyframe> waiting = backend_->give_up_search();
   plan_.earlier.clear();
   plan_.file = plan_.otherwise;
-  try {
-    backend_ = make_backend();
-  } catch (const InputError& error) {
-    spdlog::error("no session is kept: {}", error.what());
-    plan_.file.clear();
-    backend_ = make_backend();
-  }
+  backend_ = make_backend_stored_or_not();
   backend_->begin_at_epoch(before.epoch + 1);
   if (sensor_) backend_->use_sensor(*sensor_);
   spdlog::warn("the sensor was not found in the map for {:.0f} s: a map of its own is begun",
@@ -254,6 +264,10 @@ void BackendThread::publish() {
   state->session_file = backend_->session_file().string();
   state->store_failures = backend_->store_failures();
   state->store_error = backend_->store_error();
+  if (!no_session_because_.empty()) {
+    ++state->store_failures;
+    state->store_error = no_session_because_;
+  }
   crossings_.map.store(std::move(state));
 }
 

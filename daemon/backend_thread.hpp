@@ -32,6 +32,7 @@ class BackendThread {
   void restore_more();
   void keep_session();
   [[nodiscard]] std::unique_ptr<slam::Backend> make_backend() const;
+  [[nodiscard]] std::unique_ptr<slam::Backend> make_backend_stored_or_not();
   void change_map(const MapChange& change);
   void search_anew(const PlaceSearchRequest& request);
   void take_end_of_search();
@@ -48,6 +49,7 @@ class BackendThread {
   Crossings& crossings_;
   Heartbeat& heartbeat_;
   EventLog& events_;
+  std::string no_session_because_;            ///< Empty: there is one, or none was asked for.
   std::unique_ptr<slam::Backend> backend_;    ///< Never null.
   bool told_not_found_ = false;               ///< Of the search that goes on.
   std::shared_ptr<const SensorInfo> sensor_;  ///< The one that the session file names.

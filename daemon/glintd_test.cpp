@@ -267,6 +267,18 @@ TEST_F(GlintdTest, ASocketInUseExitsWith1AndNamesTheKey) {
   EXPECT_FALSE(poll_status([](const Json&) { return true; }).is_null()) << "the first one lives";
 }
 
+TEST_F(GlintdTest, ADirectoryThatTakesNoFileCostsTheSessionAndNotThePose) {
+  auto arguments = serve_capture(3);
+  // Not even root makes files there.
+  arguments.insert(arguments.end(), {"--set", "state.directory=/proc"});
+  const Process process(arguments, directory_);
+  const Json status = poll_status([](const Json& s) { return s["counters"]["scans"] == 3; });
+  ASSERT_FALSE(status.is_null()) << process.log();
+  EXPECT_EQ(status["counters"]["store_failures"], 1);
+  EXPECT_THAT(status["store_error"], HasSubstr("/proc/session-"));
+  EXPECT_THAT(process.log(), HasSubstr("no session is kept: cannot create the session file"));
+}
+
 TEST_F(GlintdTest, SystemdIsToldReadyThenFedThenStopping) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;

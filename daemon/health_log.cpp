@@ -54,9 +54,8 @@ void HealthLog::look(const RuntimeStatus& status, std::int64_t now_ns,
                   status.snapshot->shed_scans[1], now_ns);
   look_at_counter("keyframes dropped, the back end was too slow",
                   status.snapshot->dropped_keyframes, now_ns);
-  look_at_counter(
-      "failed writes of the session file, tried again (" + status.map->store_error + ")",
-      status.map->store_failures, now_ns);
+  look_at_counter("failed writes of the session file (" + status.map->store_error + ")",
+                  status.map->store_failures, now_ns);
 }
 
 void HealthLog::look_at_refusals(const RuntimeStatus& status, std::uint64_t refused,

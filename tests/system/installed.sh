@@ -149,7 +149,11 @@ rm "$root/etc/glint/glint.toml.d/talk.toml"
 say "reload: the same process does what the configuration says now"
 
 inside systemctl stop glintd.service
-inside mount -t tmpfs -o ro,mode=0755 tmpfs /var/lib/private/glint
+inside mount -t tmpfs -o mode=0755 tmpfs /var/lib/private/glint
+inside systemctl start glintd.service
+await 10 answers
+inside systemctl stop glintd.service
+inside mount -o remount,ro /var/lib/private/glint
 inside systemctl start glintd.service
 await 60 state_is TRACKING
 await 60 sh -c "nsenter --all --target $leader -- glint status --json | grep -q '\"store_failures\":[1-9]'"
