@@ -171,17 +171,17 @@ inside umount /var/lib/private/glint
 say "a full disk: it tracks on, and says so"
 
 inside systemctl stop glintd.service
-inside useradd --no-create-home --groups glint operator
+inside useradd --no-create-home --groups glint pilot
 inside useradd --no-create-home stranger
 inside systemctl -q enable --now glintd.socket
 [ "$(property ActiveState)" = inactive ] || fail "the socket's unit starts the service without a client"
 inside runuser -u stranger -- glint status --json --connect /run/glintd.sock >/dev/null 2>&1 && fail "everybody may use the socket"
 [ "$(property ActiveState)" = inactive ] || fail "who may not connect starts the service"
-inside runuser -u operator -- glint status --json --connect /run/glintd.sock >/dev/null ||
+inside runuser -u pilot -- glint status --json --connect /run/glintd.sock >/dev/null ||
   fail "a member of the group glint is not served by the service it starts"
 active || fail "a client at the socket does not start the service"
 await 60 state_is TRACKING
-inside runuser -u operator -- glint pose --json --connect /run/glintd.sock | grep '"p_m"' >/dev/null || fail "no pose at the socket"
+inside runuser -u pilot -- glint pose --json --connect /run/glintd.sock | grep '"p_m"' >/dev/null || fail "no pose at the socket"
 say "glintd.socket: the group's members are served, and the first of them starts the service"
 
 process=$(property MainPID)
