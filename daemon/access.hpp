@@ -22,7 +22,7 @@ Right needed_right(std::string_view method);
 std::string_view to_string(Right right);
 
 /// The tokens that give rights to clients. They come from files, for the configuration may be read
-/// by anyone. Only their digests are kept. Immutable; thread-safe.
+/// by anyone. Only their digests are kept. Const calls are thread-safe.
 class Access {
  public:
   /// Reads the files of server.read_token_file and server.control_token_file, a token a line, and
@@ -35,17 +35,20 @@ class Access {
   [[nodiscard]] bool is_required() const { return required_; }
   /// What a token gives, in a time that does not tell how much of it is right.
   [[nodiscard]] Right right_of(std::string_view token) const;
+  /// The same tokens with the same rights.
+  bool operator==(const Access&) const = default;
 
  private:
   using Digest = std::array<unsigned char, 32>;
   struct Token {
     Digest digest;
     Right right;
+    bool operator==(const Token&) const = default;
   };
   static Digest digest_of(std::string_view token);
   void read_tokens(const std::string& file, const char* key, Right right);
 
-  const bool required_;
+  bool required_;
   std::vector<Token> tokens_;
 };
 

@@ -217,6 +217,18 @@ void Server::admit(Connection::Socket socket, bool is_tcp) {
   session->start();
 }
 
+void Server::read_secrets_again(const Config::Server& config) {
+  Access access(config);
+  // Connections hold what they need of the former one.
+  tls_ = make_tls_context(config);
+  if (access == access_) return;
+  access_ = std::move(access);
+  const std::vector<std::shared_ptr<Session>> sessions(sessions_.begin(), sessions_.end());
+  for (const auto& session : sessions) {
+    if (session->lives_by_token()) session->close();
+  }
+}
+
 void Server::tick() {
   counters_.unsent_poses = unsent_poses_.load();
   const std::vector<std::shared_ptr<Session>> sessions(sessions_.begin(), sessions_.end());

@@ -32,6 +32,10 @@ class Server {
 
   /// Begins to accept.
   void start();
+  /// Certificate, key and tokens are what their files hold now; `config` names the same files as
+  /// before. Clients that were let in by a token come anew when tokens have changed. Main thread.
+  /// @throws ConfigError when one cannot be used; then all stays as it was.
+  void read_secrets_again(const Config::Server& config);
   /// Closes everything; afterwards the io_context has no work of the server.
   void close();
   /// Hands a new pose to the subscribers. From any thread; does not wait. When the main thread is
@@ -62,8 +66,8 @@ class Server {
   boost::asio::io_context& io_;
   Api& api_;
   const std::size_t max_clients_;
-  const Access access_;
-  const std::unique_ptr<boost::asio::ssl::context> tls_;  ///< Null: TCP goes without.
+  Access access_;
+  std::unique_ptr<boost::asio::ssl::context> tls_;  ///< Null: TCP goes without.
   ServerCounters counters_;
   const SessionContext context_;
   bool tcp_asks_token_ = false;

@@ -113,6 +113,7 @@ void Service::reload() {
       if (before.value(pointer, Json()) == value || pointer == "/log/level") continue;
       spdlog::warn("reload: {} = {} takes effect at the next start only", pointer, value.dump());
     }
+    server_.read_secrets_again(config_.server);
     config_.log = fresh.log;
     set_log_level(fresh.log.level);
     spdlog::info("reload: log.level is {}", fresh.log.level);

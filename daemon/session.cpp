@@ -172,6 +172,7 @@ void Session::authenticate(const Request& request) {
   }
   const Right given = context_.access.right_of(token->get_ref<const std::string&>());
   if (given == Right::kNone && right_ != Right::kControl) return refuse_token(request.id);
+  lives_by_token_ = lives_by_token_ || given > right_;
   right_ = std::max(right_, given);
   Json result = context_.api.head();
   result["rights"] = rights_json(right_);

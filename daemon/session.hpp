@@ -50,6 +50,8 @@ class Session : public std::enable_shared_from_this<Session> {
   void start();
   /// Whether the client still owes a token.
   [[nodiscard]] bool owes_token() const { return right_ == Right::kNone; }
+  /// Whether a token gave the client a right that it would not have else.
+  [[nodiscard]] bool lives_by_token() const { return lives_by_token_; }
   void offer(const std::shared_ptr<const Snapshot>& snapshot);
   /// Due notifications and time-outs; `now_ns`: steady clock.
   void tick(std::int64_t now_ns);
@@ -86,6 +88,7 @@ class Session : public std::enable_shared_from_this<Session> {
   Subscriptions subscriptions_;
   RequestBudget budget_;
   Right right_;
+  bool lives_by_token_ = false;
 
   std::array<char, 16384> chunk_{};
   std::string input_;  ///< Received, not yet taken.

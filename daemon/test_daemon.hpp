@@ -7,6 +7,7 @@
 #include <boost/asio/post.hpp>
 #include <condition_variable>
 #include <deque>
+#include <future>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -91,6 +92,13 @@ class TestDaemon {
   [[nodiscard]] std::string address() const { return "127.0.0.1:" + std::to_string(port_); }
   [[nodiscard]] const SensorInfo& info() const { return info_; }
   daemon::Runtime& runtime() { return *runtime_; }
+  /// As after SIGHUP. @throws what the server does.
+  void read_secrets_again(const daemon::Config& config) {
+    std::packaged_task<void()> task([&] { server_->read_secrets_again(config.server); });
+    std::future<void> done = task.get_future();
+    boost::asio::post(io_, [&task] { task(); });
+    done.get();
+  }
   FakeSource& source() { return *source_; }
   void feed(const std::vector<Bytes>& packets) {
     for (const Bytes& packet : packets) source_->feed(packet);

@@ -100,6 +100,45 @@ TEST_F(TlsTest, TokensAreAskedForAndSentWithin) {
               HasSubstr("refuses the token"));
 }
 
+TEST_F(TlsTest, ARenewedCertificateIsServedAndConnectionsGoOn) {
+  TestDaemon daemon(config_);
+  Client before(daemon.address(), {file("server.crt"), ""});
+  std::filesystem::copy(file("server.crt"), file("former.crt"));
+  write_pair("server");
+  daemon.read_secrets_again(config_);
+  EXPECT_EQ(before.call("get_pose")["state"], "INIT");
+  Client after(daemon.address(), {file("server.crt"), ""});
+  EXPECT_EQ(after.call("get_pose")["state"], "INIT");
+  EXPECT_THAT(connect_error(daemon.address(), {file("former.crt"), ""}), HasSubstr("not trusted"));
+}
+
+TEST_F(TlsTest, ARenewedKeyThatDoesNotFitChangesNothing) {
+  TestDaemon daemon(config_);
+  std::filesystem::copy(file("server.crt"), file("former.crt"));
+  std::ofstream(file("server.key")) << "half of it\n";
+  EXPECT_THROW(daemon.read_secrets_again(config_), ConfigError);
+  Client client(daemon.address(), {file("former.crt"), ""});
+  EXPECT_EQ(client.call("get_pose")["state"], "INIT");
+}
+
+TEST_F(TlsTest, ATokenThatIsWithdrawnLetsNobodyInAnyMore) {
+  std::ofstream(file("token")) << "0123456789abcdef\nfedcba9876543210\n";
+  config_.server.read_token_file = file("token");
+  config_.server.require_token = true;
+  TestDaemon daemon(config_);
+  const ClientSecurity withdrawn{file("server.crt"), "0123456789abcdef"};
+  const ClientSecurity kept{file("server.crt"), "fedcba9876543210"};
+  Client client(daemon.address(), withdrawn);
+  daemon.read_secrets_again(config_);
+  EXPECT_EQ(client.call("get_pose")["state"], "INIT") << "nothing has changed";
+  std::ofstream(file("token")) << "fedcba9876543210\n";
+  daemon.read_secrets_again(config_);
+  EXPECT_THROW(client.call("get_pose"), ClientError);
+  EXPECT_THAT(connect_error(daemon.address(), withdrawn), HasSubstr("refuses the token"));
+  Client other(daemon.address(), kept);
+  EXPECT_EQ(other.call("get_pose")["state"], "INIT");
+}
+
 TEST_F(TlsTest, ACertificateThatNobodyVouchesForIsRefusedByTheClient) {
   TestDaemon daemon(config_);
   write_pair("other");
