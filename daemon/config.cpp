@@ -224,10 +224,11 @@ constexpr std::array kKeys{
         "server.listen", &at<&Config::server, &Config::Server::listen>, 0, 0, "", "",
         "Address and TCP port of the server. One that other machines reach needs a token, below. "
         "Empty: no TCP."},
-    ConfigKey{
-        "server.unix_socket", &at<&Config::server, &Config::Server::unix_socket>, 0, 0, "", "",
-        "Path of the Unix socket. auto: glintd.sock in systemd's RuntimeDirectory, else none. A socket "
-        "that systemd passes (glintd.socket) takes its place, or that of listen."},
+    ConfigKey{"server.unix_socket", &at<&Config::server, &Config::Server::unix_socket>, 0, 0, "",
+              "",
+              "Path of the Unix socket. auto: glintd.sock in systemd's RuntimeDirectory, else "
+              "none. A socket "
+              "that systemd passes (glintd.socket) takes its place, or that of listen."},
     ConfigKey{"server.read_token_file", &at<&Config::server, &Config::Server::read_token_file>, 0,
               0, "", "",
               "File with the tokens of clients that may read, one a line (openssl rand -hex 32). A "

@@ -279,6 +279,18 @@ TEST_F(GlintdTest, ADirectoryThatTakesNoFileCostsTheSessionAndNotThePose) {
   EXPECT_THAT(process.log(), HasSubstr("no session is kept: cannot create the session file"));
 }
 
+TEST_F(GlintdTest, CountersAreToldOnStandardErrorWhereThatIsNotTheJournal) {
+  auto arguments = serve_capture(1);
+  arguments.insert(arguments.end(), {"--set", "state.directory=/proc"});
+  // Inherited from a service that started this one with its output elsewhere.
+  setenv("JOURNAL_STREAM", "1:1", 1);
+  const Process process(arguments, directory_);
+  for (int i = 0; i < 500 && process.log().find("failed writes") == std::string::npos; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  EXPECT_THAT(process.log(), HasSubstr("<4>1 failed writes of the session file"));
+}
+
 TEST_F(GlintdTest, SystemdIsToldReadyThenFedThenStopping) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;

@@ -2,6 +2,7 @@
 // Copyright 2026 The Glint Authors
 #include "daemon/health_log.hpp"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include "daemon/protocol_status.hpp"
@@ -34,27 +35,33 @@ void HealthLog::look(const RuntimeStatus& status, std::int64_t now_ns,
   const AssemblerCounters& packets = status.snapshot->packets;
   look_at_refusals(status, packets.bad_size + packets.bad_serial + status.snapshot->early_packets,
                    now_ns);
-  look_at_counter(
-      "packets dropped by the kernel, its receive buffer was full (raise "
-      "net.core.rmem_max)",
-      status.kernel_drops, now_ns);
-  look_at_counter("packets dropped, odometry was too slow", status.packets.dropped, now_ns);
-  look_at_counter("packets that never came", packets.missing_packets, now_ns);
-  look_at_counter("packets that came too late", packets.late_packets, now_ns);
-  look_at_counter("packets damaged on the way, their checksum is wrong", packets.corrupt_packets,
+  look_at_counter("kernel_drops",
+                  "packets dropped by the kernel, its receive buffer was full (raise "
+                  "net.core.rmem_max)",
+                  status.kernel_drops, now_ns);
+  look_at_counter("queue_drops", "packets dropped, odometry was too slow", status.packets.dropped,
                   now_ns);
-  look_at_counter("datagrams of another size than the sensor's packets", packets.bad_size, now_ns);
-  look_at_counter("datagrams of another type than lidar packets", packets.bad_type, now_ns);
-  look_at_counter("packets of another sensor", packets.bad_serial, now_ns);
-  look_at_counter("jumps of the sensor's or this machine's clock", status.snapshot->clock.jumps,
+  look_at_counter("missing_packets", "packets that never came", packets.missing_packets, now_ns);
+  look_at_counter("late_packets", "packets that came too late", packets.late_packets, now_ns);
+  look_at_counter("corrupt_packets", "packets damaged on the way, their checksum is wrong",
+                  packets.corrupt_packets, now_ns);
+  look_at_counter("bad_size", "datagrams of another size than the sensor's packets",
+                  packets.bad_size, now_ns);
+  look_at_counter("bad_type", "datagrams of another type than lidar packets", packets.bad_type,
                   now_ns);
-  look_at_counter("IMU packets that hold no measurement", status.snapshot->imu.bad_packets, now_ns);
+  look_at_counter("bad_serial", "packets of another sensor", packets.bad_serial, now_ns);
+  look_at_counter("clock_jumps", "jumps of the sensor's or this machine's clock",
+                  status.snapshot->clock.jumps, now_ns);
+  look_at_counter("bad_imu_packets", "IMU packets that hold no measurement",
+                  status.snapshot->imu.bad_packets, now_ns);
   look_at_mount(status.snapshot->imu);
-  look_at_counter("scans of which a part was left out, the machine is too slow (status: load)",
+  look_at_counter("shed_scans",
+                  "scans of which a part was left out, the machine is too slow (status: load)",
                   status.snapshot->shed_scans[1], now_ns);
-  look_at_counter("keyframes dropped, the back end was too slow",
+  look_at_counter("dropped_keyframes", "keyframes dropped, the back end was too slow",
                   status.snapshot->dropped_keyframes, now_ns);
-  look_at_counter("failed writes of the session file (" + status.map->store_error + ")",
+  look_at_counter("store_failures",
+                  "failed writes of the session file (" + status.map->store_error + ")",
                   status.map->store_failures, now_ns);
 }
 
@@ -66,10 +73,12 @@ void HealthLog::look_at_refusals(const RuntimeStatus& status, std::uint64_t refu
   refused_ = refused;
 }
 
-void HealthLog::look_at_counter(const std::string& what, std::uint64_t value, std::int64_t now_ns) {
-  std::uint64_t& logged = logged_[what];
-  if (value <= logged || !limiter_.allow(what, now_ns)) return;
-  spdlog::warn("{} {} ({} in all)", value - logged, what, value);
+void HealthLog::look_at_counter(const std::string& name, const std::string& what,
+                                std::uint64_t value, std::int64_t now_ns) {
+  std::uint64_t& logged = logged_[name];
+  if (value <= logged || !limiter_.allow(name, now_ns)) return;
+  const std::uint64_t added = value - logged;
+  warn_of_counter(fmt::format("{} {} ({} in all)", added, what, value), name, added, value);
   logged = value;
 }
 

@@ -22,7 +22,9 @@ class HealthLog {
 
  private:
   void look_at_refusals(const RuntimeStatus& status, std::uint64_t refused, std::int64_t now_ns);
-  void look_at_counter(const std::string& what, std::uint64_t value, std::int64_t now_ns);
+  /// `name`: the counter's in the status.
+  void look_at_counter(const std::string& name, const std::string& what, std::uint64_t value,
+                       std::int64_t now_ns);
 
   void look_at_mount(const ImuStatus& imu);
 

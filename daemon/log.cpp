@@ -2,10 +2,16 @@
 // Copyright 2026 The Glint Authors
 #include "daemon/log.hpp"
 
+#include <fmt/format.h>
 #include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
+#include <sys/stat.h>
+#include <syslog.h>
+#include <systemd/sd-journal.h>
+#include <unistd.h>
 
+#include <array>
 #include <cstdlib>
 
 #include "daemon/steady_clock.hpp"
@@ -35,6 +41,15 @@ class JournalPriority : public spdlog::custom_flag_formatter {
   }
 };
 
+/// Whether standard error is the journal's own stream (systemd.exec(5), JOURNAL_STREAM): the
+/// variable alone may have been inherited by a program whose output goes elsewhere.
+bool writes_to_journal() {
+  const char* stream = std::getenv("JOURNAL_STREAM");
+  struct stat info {};
+  return stream != nullptr && ::fstat(STDERR_FILENO, &info) == 0 &&
+         fmt::format("{}:{}", info.st_dev, info.st_ino) == stream;
+}
+
 }  // namespace
 
 void set_up_logging(const std::string& level) {
@@ -53,6 +68,22 @@ void set_up_logging(const std::string& level) {
 }
 
 void set_log_level(const std::string& level) { spdlog::set_level(spdlog::level::from_str(level)); }
+
+void warn_of_counter(const std::string& text, const std::string& counter, std::uint64_t added,
+                     std::uint64_t value) {
+  if (!writes_to_journal()) return spdlog::warn("{}", text);
+  if (!spdlog::should_log(spdlog::level::warn)) return;
+  const std::array fields{fmt::format("MESSAGE={}", text), fmt::format("PRIORITY={}", LOG_WARNING),
+                          fmt::format("GLINT_COUNTER={}", counter),
+                          fmt::format("GLINT_ADDED={}", added),
+                          fmt::format("GLINT_VALUE={}", value)};
+  std::array<iovec, fields.size()> parts{};
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    // The call reads only.
+    parts[i] = {const_cast<char*>(fields[i].data()), fields[i].size()};
+  }
+  if (sd_journal_sendv(parts.data(), static_cast<int>(parts.size())) < 0) spdlog::warn("{}", text);
+}
 
 bool LogLimiter::allow(const std::string& cause, std::int64_t now_ns) {
   if (last_ns_.size() > kMostCauses) {

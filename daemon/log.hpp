@@ -14,6 +14,11 @@ void set_up_logging(const std::string& level);
 /// debug, info, warn or error.
 void set_log_level(const std::string& level);
 
+/// Warns that a counter has risen by `added` to `value`. In the journal the entry has the fields
+/// GLINT_COUNTER (the counter's name in the status), GLINT_ADDED and GLINT_VALUE beside its text.
+void warn_of_counter(const std::string& text, const std::string& counter, std::uint64_t added,
+                     std::uint64_t value);
+
 /// At most one line per cause in ten seconds, whatever happens how often. Thread-compatible.
 class LogLimiter {
  public:

@@ -166,6 +166,7 @@ inside systemctl start glintd.service
 await 60 state_is TRACKING
 await 60 sh -c "nsenter --all --target $leader -- glint status --json | grep -q '\"store_failures\":[1-9]'"
 state_is TRACKING || fail "it does not track while the disk is full"
+await 20 sh -c "nsenter --all --target $leader -- journalctl -u glintd -o json GLINT_COUNTER=store_failures | grep -q '\"PRIORITY\":\"4\".*'"
 inside systemctl stop glintd.service
 inside umount /var/lib/private/glint
 say "a full disk: it tracks on, and says so"
