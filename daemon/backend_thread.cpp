@@ -121,13 +121,7 @@ void BackendThread::process(const slam::Keyframe& keyframe) {
 
 void BackendThread::restore_more() {
   const slam::MapCorrection before = backend_->correction();
-  const std::uint64_t unreadable = backend_->unreadable_keyframes();
-  if (!backend_->restore_more()) return;
-  tell(before);
-  if (unreadable == 0 && backend_->unreadable_keyframes() > 0) {
-    spdlog::warn("keyframes of {} are damaged; the map lacks what they showed",
-                 plan_.earlier.string());
-  }
+  if (backend_->restore_more()) tell(before);
 }
 
 void BackendThread::search_anew(const PlaceSearchRequest& request) {

@@ -50,16 +50,19 @@ void HealthLog::look(const RuntimeStatus& status, std::int64_t now_ns,
   look_at_counter("bad_type", "datagrams of another type than lidar packets", packets.bad_type,
                   now_ns);
   look_at_counter("bad_serial", "packets of another sensor", packets.bad_serial, now_ns);
-  look_at_counter("clock_jumps", "jumps of the sensor's or this machine's clock",
+  look_at_counter("clock.jumps", "jumps of the sensor's or this machine's clock",
                   status.snapshot->clock.jumps, now_ns);
   look_at_counter("bad_imu_packets", "IMU packets that hold no measurement",
                   status.snapshot->imu.bad_packets, now_ns);
   look_at_mount(status.snapshot->imu);
-  look_at_counter("shed_scans",
+  look_at_counter("load.shed_scans",
                   "scans of which a part was left out, the machine is too slow (status: load)",
                   status.snapshot->shed_scans[1], now_ns);
   look_at_counter("dropped_keyframes", "keyframes dropped, the back end was too slow",
                   status.snapshot->dropped_keyframes, now_ns);
+  look_at_counter("map.unreadable_keyframes",
+                  "keyframes of the earlier map that are damaged, it lacks what they showed",
+                  status.map->unreadable_keyframes, now_ns);
   look_at_counter("store_failures",
                   "failed writes of the session file (" + status.map->store_error + ")",
                   status.map->store_failures, now_ns);

@@ -22,7 +22,7 @@ class HealthLog {
 
  private:
   void look_at_refusals(const RuntimeStatus& status, std::uint64_t refused, std::int64_t now_ns);
-  /// `name`: the counter's in the status.
+  /// `name`: as warn_of_counter() has it.
   void look_at_counter(const std::string& name, const std::string& what, std::uint64_t value,
                        std::int64_t now_ns);
 

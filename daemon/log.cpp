@@ -55,7 +55,7 @@ bool writes_to_journal() {
 void set_up_logging(const std::string& level) {
   auto logger =
       std::make_shared<spdlog::logger>("glintd", std::make_shared<spdlog::sinks::stderr_sink_mt>());
-  if (std::getenv("JOURNAL_STREAM") != nullptr) {
+  if (writes_to_journal()) {
     auto formatter = std::make_unique<spdlog::pattern_formatter>();
     formatter->add_flag<JournalPriority>('P').set_pattern("%P%v");
     logger->set_formatter(std::move(formatter));

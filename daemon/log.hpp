@@ -15,7 +15,8 @@ void set_up_logging(const std::string& level);
 void set_log_level(const std::string& level);
 
 /// Warns that a counter has risen by `added` to `value`. In the journal the entry has the fields
-/// GLINT_COUNTER (the counter's name in the status), GLINT_ADDED and GLINT_VALUE beside its text.
+/// GLINT_COUNTER (its name among the status's `counters`, or its path in the status), GLINT_ADDED
+/// and GLINT_VALUE beside its text.
 void warn_of_counter(const std::string& text, const std::string& counter, std::uint64_t added,
                      std::uint64_t value);
 
