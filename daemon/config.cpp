@@ -208,6 +208,9 @@ constexpr std::array kKeys{
               "Keep the map level by what the accelerometer feels."},
     ConfigKey{"slam.loop_consistency", &at<&Config::slam, &SlamConfig::loop_consistency>, 0, 0, "",
               "", "Of loops that contradict one another keep the largest set that agrees."},
+    ConfigKey{"slam.thin_keyframes", &at<&Config::slam, &SlamConfig::thin_keyframes>, 0, 0, "", "",
+              "Keyframes that show nothing that older ones do not are not kept: map and session do "
+              "not grow where the sensor passes again and again."},
     ConfigKey{
         "slam.vocabulary", &at<&Config::slam, &SlamConfig::vocabulary>, 0, 0, "", "",
         "File of the visual words that recognise them, see glint train-vocabulary. Empty: the "

@@ -29,6 +29,13 @@ double voxel_from_median_range_m(const Keyframe& keyframe) {
 // clients are spared a jump of the map that only noise would tell.
 constexpr double kFitting = 6.0;
 
+// As far as this the poses may be from where a keyframe was seen before; they are corrected where
+// it is more.
+constexpr double kSeenAgain_m = 0.3;
+constexpr double kSeenAgain_rad = 0.05;
+// Keyframes that show nothing new are still kept so often, as poses: odometry is known in parts.
+constexpr double kBareEvery_m = 4.0;
+
 bool same_pair(const LoopEdge& a, const LoopEdge& b) { return a.from == b.from && a.to == b.to; }
 
 LargestCorrection largest_of(std::span<const Pose> before, std::span<const Pose> after) {
@@ -78,6 +85,7 @@ void Backend::use_sensor(const SensorInfo& info) {
 }
 
 void Backend::process(const Keyframe& keyframe) {
+  const std::uint32_t epoch_before = correction_.epoch;
   times_ = {};
   const StageTimer timer(clock_, times_, Stage::kBackend);
   loop_reports_.clear();
@@ -95,25 +103,49 @@ void Backend::process(const Keyframe& keyframe) {
   keep_session();
   keep_within_memory();
   publish();
+  if (correction_.epoch != epoch_before) give_back_memory();
 }
 
-// Into graph, map and session.
+// Into graph, map and session; of what is known already no more than the graph needs.
 void Backend::take(Keyframe keyframe) {
+  if (!map_) make_map(keyframe);
+  leave_out_moving(keyframe);
+  LoopSearch found;
+  if (loops_ && !memory_.full) found = loops_.search(keyframe);
+  if (shows_nothing_new(keyframe, found)) {
+    if (!is_needed(keyframe, found)) return take_loops(found);
+    keyframe.points.clear();
+    keyframe.features = {};
+  }
   {
     const StageTimer pgo(clock_, times_, Stage::kPgo);
     graph_.add(keyframe);
   }
   const Pose T_map_sensor = graph_.poses().back();
-  if (!map_) make_map(keyframe);
-  leave_out_moving(keyframe);
   if (memory_.full) {
     map_->skip_view(keyframe.points.size());
   } else {
     map_->insert(T_map_sensor, keyframe.points);
   }
   if (store_) store_->add(keyframe, T_map_sensor, words_of(keyframe));
-  if (loops_ && !memory_.full) look_for_loops(keyframe);
+  take_loops(found);
   if (graph_.tilted()) settle();
+}
+
+// Whether what the keyframe shows is in the map, which has it where the loops have it.
+bool Backend::shows_nothing_new(const Keyframe& keyframe, const LoopSearch& found) const {
+  if (!found.seen_before) return false;
+  const auto older = graph_.pose(found.seen_before->keyframe);
+  if (!older || graph_.nodes().back().segment != keyframe.estimate.segment) return false;
+  const Pose off = (*older * found.seen_before->T_older_current).inverse() * graph_.next(keyframe);
+  return off.translation_m.norm() < kSeenAgain_m && so3_log(off.rotation).norm() < kSeenAgain_rad;
+}
+
+// A loop needs it, or the way since the one before is long.
+bool Backend::is_needed(const Keyframe& keyframe, const LoopSearch& found) const {
+  const Pose& last = graph_.nodes().back().T_odom_sensor;
+  const Pose& now = keyframe.estimate.T_odom_sensor;
+  return !found.edges.empty() || (now.translation_m - last.translation_m).norm() > kBareEvery_m;
 }
 
 void Backend::leave_out_moving(Keyframe& keyframe) {
@@ -165,8 +197,7 @@ void Backend::settle() {
   }
 }
 
-void Backend::look_for_loops(const Keyframe& keyframe) {
-  LoopSearch found = loops_.search(keyframe);
+void Backend::take_loops(LoopSearch& found) {
   for (LoopCandidate& candidate : found.candidates) {
     loop_reports_.push_back({stamp_, std::move(candidate), {}, {}, {}});
   }

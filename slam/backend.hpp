@@ -176,7 +176,9 @@ class Backend {
   void continue_session(const std::filesystem::path& session);
   void take(Keyframe keyframe);
   void leave_out_moving(Keyframe& keyframe);
-  void look_for_loops(const Keyframe& keyframe);
+  [[nodiscard]] bool shows_nothing_new(const Keyframe& keyframe, const LoopSearch& found) const;
+  [[nodiscard]] bool is_needed(const Keyframe& keyframe, const LoopSearch& found) const;
+  void take_loops(LoopSearch& found);
   void settle();
   void take_loops(std::span<const LoopEdge> edges);
   LoopReport& report_of(const LoopEdge& edge);
@@ -186,6 +188,7 @@ class Backend {
   void correct(const std::vector<Pose>& before);
   void make_map(const Keyframe& first);
   void keep_within_memory();
+  static void give_back_memory();
   [[nodiscard]] std::size_t memory_bytes() const;
   void store_changes();
   void publish();

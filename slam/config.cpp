@@ -17,7 +17,7 @@ SlamConfig preset_config(const std::string& name) {
         false;
     config.image_filter = config.ba_by_noise = config.moving_objects = false;
     config.patches = false;
-    config.pgo_gravity = config.loop_consistency = false;
+    config.pgo_gravity = config.loop_consistency = config.thin_keyframes = false;
     config.orb_upright = false;
     config.loop_density = false;
     config.local_map_reach_m = 0.0;

@@ -80,6 +80,8 @@ struct SlamConfig {
   /// Of loops that contradict one another the largest set that agrees is kept. Off: those that fit
   /// worst are taken out one by one.
   bool loop_consistency = true;
+  /// Keyframes that show nothing that older ones do not are not kept. Off: all are.
+  bool thin_keyframes = true;
   /// Height of the sensor above the ground, m; 0 (auto): that of the dominant low plane.
   double sensor_height_m = 0.0;
   /// Weight of the ground's residuals to those of other surfaces.

@@ -2,20 +2,31 @@
 // Copyright 2026 The Glint Authors
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
+#include "driver/core/pose.hpp"
 #include "slam/cold_file.hpp"
 #include "slam/keyframe.hpp"
 #include "slam/loop_edge.hpp"
 
 namespace glint::slam {
 
+/// An older keyframe that shows all that a new one does, nearly from where it is.
+struct SeenBefore {
+  std::uint64_t keyframe = 0;
+  Pose T_older_current;  ///< By the last loop and the odometry since.
+};
+
 /// What the search for a loop found at one keyframe.
 struct LoopSearch {
   /// From an earlier keyframe to that one first, and to others shortly before it.
   std::vector<LoopEdge> edges;
   std::vector<LoopCandidate> candidates;  ///< Looked into at this keyframe, with the edges' own.
+  /// Not looked for again is what the keyframe shows, for another one shows it.
+  std::optional<SeenBefore> seen_before;
 };
 
 /// What knows the places of keyframes. Called by the back end only.

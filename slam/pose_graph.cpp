@@ -40,14 +40,10 @@ Matrix6 floor_covariance(double sigma_m, double sigma_rad) {
 
 const Pose& PoseGraph::add(const Keyframe& keyframe) {
   const OdometryEstimate& estimate = keyframe.estimate;
-  Pose T_map_sensor = estimate.T_odom_sensor;
+  const Pose T_map_sensor = next(keyframe);
   // Keyframes that never came here were steps, too.
-  std::uint64_t steps = 1;
-  if (!nodes_.empty()) {
-    const GraphNode& last = nodes_.back();
-    T_map_sensor = poses_.back() * (last.T_odom_sensor.inverse() * estimate.T_odom_sensor);
-    steps = std::max<std::uint64_t>(1, keyframe.id - last.id);
-  }
+  const std::uint64_t steps =
+      nodes_.empty() ? 1 : std::max<std::uint64_t>(1, keyframe.id - nodes_.back().id);
   const Matrix6 least = floor_covariance(kStepFloor_m, kStepFloor_rad);
   Matrix6 covariance = least + kOdometryInflation * keyframe.edge_covariance;
   if (whitening_of(covariance).isZero(0.0)) covariance = least;
@@ -58,6 +54,17 @@ const Pose& PoseGraph::add(const Keyframe& keyframe) {
   consistency_.add(nodes_.back(), step_covariances_.back());
   if (options_.gravity && keyframe.gravity) take_gravity(keyframe);
   return poses_.back();
+}
+
+Pose PoseGraph::next(const Keyframe& keyframe) const {
+  const Pose& T_odom_sensor = keyframe.estimate.T_odom_sensor;
+  if (nodes_.empty()) return T_odom_sensor;
+  return poses_.back() * (nodes_.back().T_odom_sensor.inverse() * T_odom_sensor);
+}
+
+std::optional<Pose> PoseGraph::pose(std::uint64_t id) const {
+  const auto node = find(id);
+  return node ? std::optional(poses_[*node]) : std::nullopt;
 }
 
 void PoseGraph::add_at(const Keyframe& keyframe, const Pose& T_map_sensor) {

@@ -51,6 +51,11 @@ class PoseGraph {
   /// T_map_sensor of each node.
   [[nodiscard]] std::span<const Pose> poses() const { return poses_; }
 
+  /// T_map_sensor of a keyframe. Null if it is none of the graph's.
+  [[nodiscard]] std::optional<Pose> pose(std::uint64_t id) const;
+  /// Where odometry carries the last one's pose to, as add() would have it.
+  [[nodiscard]] Pose next(const Keyframe& keyframe) const;
+
   /// Null if a keyframe is not in the graph, or the covariance is none.
   [[nodiscard]] std::optional<LoopMisfit> misfit(const LoopEdge& loop) const;
   /// Both keyframes already hold together, so that the loop's misfit tells something.

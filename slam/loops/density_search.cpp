@@ -14,6 +14,8 @@ namespace {
 constexpr std::size_t kMapReach = 10;
 // A map is kept each time when so many keyframes have passed.
 constexpr std::size_t kMapEvery = 4;
+// Those with more way than this between them are no neighbours: places were taken out there.
+constexpr double kLongestGap_m = 5.0;
 // Proposals this near to a better one (in keyframes) say the same.
 constexpr std::size_t kSameReach = 12;
 constexpr std::size_t kMostProposals = 2;
@@ -46,19 +48,29 @@ bool leaves_room(const Place& older, const Place& current, const Pose& T_older_c
 
 std::span<const Place> places_around(std::span<const Place> places, std::size_t entry,
                                      std::size_t reach) {
-  std::size_t first = entry - std::min(entry, reach);
-  std::size_t last = std::min(places.size() - 1, entry + reach);
-  while (places[first].segment != places[entry].segment) ++first;
-  while (places[last].segment != places[entry].segment) --last;
+  const auto neighbours = [&](std::size_t a, std::size_t b) {
+    return places[a].segment == places[b].segment &&
+           places[b].path_m - places[a].path_m <= kLongestGap_m;
+  };
+  std::size_t first = entry;
+  while (first > 0 && entry - first < reach && neighbours(first - 1, first)) --first;
+  std::size_t last = entry;
+  while (last + 1 < places.size() && last - entry < reach && neighbours(last, last + 1)) ++last;
   return places.subspan(first, last - first + 1);
 }
 
 void DensitySearch::keep(std::span<const Place> places) {
   for (; kept_ + kMapReach < places.size(); ++kept_) {
+    if (places[kept_].known) continue;
     if (!mapped_.empty() && kept_ < mapped_.back() + kMapEvery) continue;
     index_.add(make_density_map(places[kept_], places_around(places, kept_, kMapReach)));
     mapped_.push_back(kept_);
   }
+}
+
+void DensitySearch::renumber(std::span<const std::size_t> number_now) {
+  for (std::size_t& entry : mapped_) entry = number_now[entry];
+  kept_ = number_now[kept_];
 }
 
 // The entries that can be here, the nearest by odometry if they are many.

@@ -27,8 +27,11 @@ class DensitySearch {
   /// Maps that are compared with the current one at most: what a keyframe costs is bounded.
   static constexpr std::size_t kMostAsked = 150;
 
-  /// Takes note of the places; those that have come since the last call are the last ones.
+  /// Takes note of the places; those that have come since the last call are the last ones. Known
+  /// ones are none that a map is kept of.
   void keep(std::span<const Place> places);
+  /// Known places are taken out: `number_now` of each, that of the next one left for these.
+  void renumber(std::span<const std::size_t> number_now);
   /// Older places, of those before `end`, that the last one may be at, the best first; at most a
   /// few, none next to a better one.
   std::vector<Proposal> propose(std::span<const Place> places, std::size_t end);

@@ -34,8 +34,12 @@ constexpr std::size_t kShapeBefore = 10;
 constexpr double kShapeNeeds = 2.0;
 // Keyframes on either side of a place whose keypoints are taken together with its own.
 constexpr std::size_t kBeside = 2;
-// A loop says most of what those just after it would.
+// A loop says most of what those just after it would; and where so many have been found so near to
+// one another, another pass needs few to be held to the map.
 constexpr double kLoopEvery_m = 1.0;
+constexpr double kLoopEveryCrowded_m = 4.0;
+constexpr double kCrowd_m = 2.0;
+constexpr int kCrowd = 4;
 // What waits longer to be borne out is given up.
 constexpr double kLongestWait_m = 15.0;
 // What a place takes in the indices, about: its words, and a fourth of the map around it.
@@ -56,8 +60,8 @@ std::size_t apart(std::size_t a, std::size_t b) { return a > b ? a - b : b - a; 
 
 }  // namespace
 
-LoopDetector::LoopDetector(std::shared_ptr<const Vocabulary> vocabulary, bool density)
-    : vocabulary_(std::move(vocabulary)), index_(vocabulary_->word_count()) {
+LoopDetector::LoopDetector(std::shared_ptr<const Vocabulary> vocabulary, bool density, bool thins)
+    : vocabulary_(std::move(vocabulary)), thins_(thins), index_(vocabulary_->word_count()) {
   if (density) density_.emplace();
 }
 
@@ -85,10 +89,17 @@ std::vector<LoopEdge> LoopDetector::add(const Keyframe& keyframe) {
   let_places_age();
   BagOfWords bag = vocabulary_->bag_of(places_.back().descriptors);
   propose(bag);
-  index_.add(bag);
-  last_bag_ = std::move(bag);
   if (density_) density_->keep(places_);
-  return verify();
+  std::vector<LoopEdge> edges = verify();
+  seen_before_ = see_again();
+  if (seen_before_) {
+    places_.back().known = true;
+    ++known_;
+  }
+  index_.add(seen_before_ ? BagOfWords{} : bag);
+  last_bag_ = std::move(bag);
+  forget_known();
+  return edges;
 }
 
 void LoopDetector::append(const Keyframe& keyframe) {
@@ -146,7 +157,7 @@ int LoopDetector::streak_at(std::size_t entry) const {
 std::vector<LoopEdge> LoopDetector::verify() {
   const double path_m = places_.back().path_m;
   const std::vector<PlacePair>& loops = evidence_.loops();
-  if (!loops.empty() && path_m - loops.back().current.path_m < kLoopEvery_m) return {};
+  if (!loops.empty() && path_m - loops.back().current.path_m < least_way_m(loops.back())) return {};
   judged_.clear();
   for (const Region& region : regions_) {
     if (region.streak < kStreak) continue;
@@ -178,6 +189,16 @@ std::vector<LoopEdge> LoopDetector::verify() {
   }
   refuse("another place goes better with the loop before");
   return accept(*best);
+}
+
+// From that loop to the next.
+double LoopDetector::least_way_m(const PlacePair& loop) const {
+  if (!thins_) return kLoopEvery_m;
+  const auto beside = std::ranges::count_if(evidence_.loops(), [&](const PlacePair& other) {
+    return other.older.segment == loop.older.segment &&
+           std::abs(other.older.path_m - loop.older.path_m) < kCrowd_m;
+  });
+  return beside > kCrowd ? kLoopEveryCrowded_m : kLoopEvery_m;
 }
 
 void LoopDetector::wait(const Judged& judged) {

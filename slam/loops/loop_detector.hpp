@@ -10,6 +10,7 @@
 
 #include "slam/keyframe.hpp"
 #include "slam/loop_edge.hpp"
+#include "slam/loop_source.hpp"
 #include "slam/loops/density_search.hpp"
 #include "slam/loops/loop_evidence.hpp"
 #include "slam/loops/loop_verifier.hpp"
@@ -29,8 +30,10 @@ namespace glint::slam {
 /// on the keyframes alone. Thread-compatible.
 class LoopDetector {
  public:
-  /// `density`: the shape of the surroundings proposes places too.
-  explicit LoopDetector(std::shared_ptr<const Vocabulary> vocabulary, bool density = true);
+  /// `density`: the shape of the surroundings proposes places too. `thins`: keyframes that show
+  /// nothing that older ones do not are told, and loops are fewer where there are many.
+  explicit LoopDetector(std::shared_ptr<const Vocabulary> vocabulary, bool density = true,
+                        bool thins = true);
 
   /// Takes keyframes in order, those of a segment one after the other. The loop to the keyframe, if
   /// it is at a place seen before; at most one, and none in keyframes that follow a loop closely.
@@ -38,6 +41,9 @@ class LoopDetector {
   std::vector<LoopEdge> add(const Keyframe& keyframe);
   /// The same for a keyframe of a session before, which is to be found but not looked for.
   void remember(const Keyframe& keyframe);
+  /// The older keyframe that shows all that the one of the last add() does, where one was found by
+  /// a loop just before. Such a keyframe is not found again, and soon forgotten.
+  [[nodiscard]] const std::optional<SeenBefore>& seen_before() const { return seen_before_; }
   /// Memory taken by what is known, about, bytes.
   [[nodiscard]] std::size_t bytes() const;
   /// Puts what older keyframes show into the file; it is found as before.
@@ -72,6 +78,11 @@ class LoopDetector {
   void propose(const BagOfWords& bag);
   [[nodiscard]] int streak_at(std::size_t entry) const;
   std::vector<LoopEdge> verify();
+  [[nodiscard]] double least_way_m(const PlacePair& loop) const;
+  [[nodiscard]] std::optional<SeenBefore> see_again() const;
+  [[nodiscard]] std::optional<std::size_t> nearest_older(const PlacePair& loop,
+                                                         const Pose& here) const;
+  void forget_known();
   void judge(std::size_t entry, LoopCandidate& candidate);
   void verify_shape();
   void judge_shape(const DensitySearch::Proposal& proposal, LoopCandidate& candidate);
@@ -86,6 +97,7 @@ class LoopDetector {
   [[nodiscard]] std::span<const Place> around(std::size_t entry, std::size_t reach) const;
 
   const std::shared_ptr<const Vocabulary> vocabulary_;
+  const bool thins_;
   PlaceIndex index_;
   LoopVerifier verifier_;
   std::optional<DensitySearch> density_;
@@ -98,8 +110,10 @@ class LoopDetector {
   std::vector<Region> regions_;       ///< Of the current keyframe, the likeliest first.
   std::vector<Region> last_regions_;  ///< Of the one before.
   std::vector<LoopCandidate> candidates_;
-  std::vector<Waiting> waiting_;  ///< In order; at least kLoopEvery_m of way apart.
-  std::vector<Judged> judged_;    ///< Of the current keyframe; no two of them agree.
+  std::vector<Waiting> waiting_;           ///< In order; at least kLoopEvery_m of way apart.
+  std::vector<Judged> judged_;             ///< Of the current keyframe; no two of them agree.
+  std::optional<SeenBefore> seen_before_;  ///< Of the current keyframe.
+  std::size_t known_ = 0;                  ///< Places that are to be forgotten.
 };
 
 }  // namespace glint::slam

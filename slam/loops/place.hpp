@@ -28,6 +28,7 @@ struct Place {
   /// Points all around, one in each cube of edge voxel_m. Sensor frame, m.
   ColdArray<Eigen::Vector3f> points_m;
   float voxel_m = 0.0F;
+  bool known = false;  ///< An older one shows all of it: it is not kept for long.
 };
 
 struct PlaceOptions {

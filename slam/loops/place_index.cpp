@@ -13,6 +13,15 @@ void PlaceIndex::add(const BagOfWords& bag) {
   ++size_;
 }
 
+void PlaceIndex::renumber(std::span<const std::size_t> number_now, std::size_t size) {
+  for (std::vector<Posting>& postings : entries_of_word_) {
+    for (Posting& posting : postings) {
+      posting.entry = static_cast<std::uint32_t>(number_now[posting.entry]);
+    }
+  }
+  size_ = size;
+}
+
 const std::vector<ScoredPlace>& PlaceIndex::query(const BagOfWords& bag, std::size_t end,
                                                   double least) {
   sums_.assign(std::min(end, size_), 0.0);

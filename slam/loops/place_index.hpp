@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "slam/loops/vocabulary.hpp"
@@ -23,6 +24,9 @@ class PlaceIndex {
   explicit PlaceIndex(std::size_t word_count) : entries_of_word_(word_count) {}
 
   void add(const BagOfWords& bag);
+  /// Entries without a word are taken out: `number_now` of each entry left, in the same order, of
+  /// `size` that are.
+  void renumber(std::span<const std::size_t> number_now, std::size_t size);
   /// The entries before `end` whose similarity() to `bag` is at least `least`, in order.
   /// Valid until the next call.
   const std::vector<ScoredPlace>& query(const BagOfWords& bag, std::size_t end, double least);

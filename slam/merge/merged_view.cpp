@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "slam/merge/same_view.hpp"
+#include "slam/loops/same_view.hpp"
 
 namespace glint::slam {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright 2026 The Glint Authors
-#include "slam/merge/same_view.hpp"
+#include "slam/loops/same_view.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright 2026 The Glint Authors
-#include "slam/merge/same_view.hpp"
+#include "slam/loops/same_view.hpp"
 
 #include <algorithm>
 #include <array>
@@ -37,12 +37,16 @@ Direction direction_of(const Eigen::Vector3f& point_m, float range_m) {
           std::min(static_cast<int>(azimuth * kCellsPerRad), kAzimuths - 1)};
 }
 
+Eigen::Vector3f position(const MapPoint& p) { return {p.x_m, p.y_m, p.z_m}; }
+const Eigen::Vector3f& position(const Eigen::Vector3f& point_m) { return point_m; }
+
 /// How near and how far a keyframe saw something, by direction.
 class RangeView {
  public:
-  explicit RangeView(std::span<const MapPoint> points) {
-    for (const MapPoint& p : points) {
-      const Eigen::Vector3f point_m(p.x_m, p.y_m, p.z_m);
+  template <class Point>
+  explicit RangeView(std::span<const Point> points) {
+    for (const Point& p : points) {
+      const Eigen::Vector3f point_m = position(p);
       const float range_m = point_m.norm();
       if (range_m > 0.0F) widen(direction_of(point_m, range_m), range_m);
     }
@@ -74,23 +78,33 @@ class RangeView {
   std::array<Ranges, static_cast<std::size_t>(kAzimuths) * kElevations> cells_{};
 };
 
-}  // namespace
-
-bool shows_the_same(std::span<const MapPoint> kept, std::span<const MapPoint> other,
-                    const Pose& T_kept_other) {
+template <class Point>
+bool is_shown(std::span<const Point> kept, std::span<const Point> other, const Pose& T_kept_other) {
   const RangeView view(kept);
   const Eigen::Matrix3f rotation = T_kept_other.rotation.toRotationMatrix().cast<float>();
   const Eigen::Vector3f translation_m = T_kept_other.translation_m.cast<float>();
   std::size_t asked = 0;
   std::size_t found = 0;
-  for (const MapPoint& p : other) {
-    const Eigen::Vector3f point_m = rotation * Eigen::Vector3f(p.x_m, p.y_m, p.z_m) + translation_m;
+  for (const Point& p : other) {
+    const Eigen::Vector3f point_m = rotation * position(p) + translation_m;
     const float range_m = point_m.norm();
     if (range_m <= 0.0F) continue;
     ++asked;
     found += view.shows(point_m, range_m) ? 1 : 0;
   }
   return static_cast<double>(found) >= kLeastSameShare * static_cast<double>(asked);
+}
+
+}  // namespace
+
+bool shows_the_same(std::span<const MapPoint> kept, std::span<const MapPoint> other,
+                    const Pose& T_kept_other) {
+  return is_shown(kept, other, T_kept_other);
+}
+
+bool shows_the_same(std::span<const Eigen::Vector3f> kept, std::span<const Eigen::Vector3f> other,
+                    const Pose& T_kept_other) {
+  return is_shown(kept, other, T_kept_other);
 }
 
 }  // namespace glint::slam
