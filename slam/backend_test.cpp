@@ -256,6 +256,42 @@ TEST(Backend, LoopsThatFalseOnesKeptOutComeBackAndAreTold) {
   EXPECT_LT(error_m(backend.correction(), kRound + 10), 0.1);
 }
 
+/// A second round of which each keyframe shows what one of the first did; `off_m` from where it is.
+LoopSource all_seen_before(std::map<std::uint64_t, LoopEdge> edges, double off_m = 0.0) {
+  LoopSource source = known_loops(std::move(edges));
+  source.search = [search = source.search, off_m](const Keyframe& k) {
+    LoopSearch found = search(k);
+    if (k.id < kRound) return found;
+    Pose T_older_current = true_pose(k.id - kRound).inverse() * true_pose(k.id);
+    T_older_current.translation_m.x() += off_m;
+    found.seen_before = SeenBefore{k.id - kRound, T_older_current};
+    return found;
+  };
+  return source;
+}
+
+TEST(Backend, WhatWasSeenBeforeIsNotKept) {
+  std::map<std::uint64_t, LoopEdge> loops;
+  for (std::uint64_t k = 0; k < kRound; k += 10) loops[kRound + k] = true_loop(k, kRound + k);
+  Backend backend({}, {}, {}, all_seen_before(loops));
+  for (std::uint64_t k = 0; k < kRound; ++k) backend.process(keyframe(k));
+  backend.process(keyframe(kRound));
+  const auto first_round = backend.snapshot();
+  for (std::uint64_t k = kRound + 1; k < 2 * kRound; ++k) backend.process(keyframe(k));
+  EXPECT_EQ(backend.snapshot()->point_count, first_round->point_count);
+  EXPECT_EQ(backend.loops_accepted(), 6U);
+  // The round is 63 m long: a pose in four metres.
+  EXPECT_LT(backend.snapshot()->keyframe_count, kRound + kRound / 3);
+  EXPECT_GT(backend.snapshot()->keyframe_count, kRound + kRound / 6);
+  EXPECT_LT(error_m(backend.correction(), kRound + 5), 0.1);
+}
+
+TEST(Backend, WhatIsElsewhereByTheGraphIsKept) {
+  Backend backend({}, {}, {}, all_seen_before({{kRound, true_loop(0, kRound)}}, 1.0));
+  for (std::uint64_t k = 0; k < 2 * kRound; ++k) backend.process(keyframe(k));
+  EXPECT_EQ(backend.snapshot()->keyframe_count, 2 * kRound);
+}
+
 class BackendSession : public testing::Test {
  protected:
   void SetUp() override { std::filesystem::create_directories(directory_); }
@@ -296,6 +332,27 @@ TEST_F(BackendSession, TheSessionHasTheLoopItsEventAndTheMovedKeyframes) {
   ASSERT_EQ(blob.size(), sizeof pose);
   std::memcpy(pose.data(), blob.data(), sizeof pose);
   EXPECT_LT(std::hypot(pose[0], pose[1]), 0.02);
+}
+
+TEST_F(BackendSession, OfWhatWasSeenBeforeTheSessionHasPosesAlone) {
+  std::size_t points = 0;
+  {
+    Backend backend({}, file_, {}, all_seen_before({{kRound, true_loop(0, kRound)}}));
+    for (std::uint64_t k = 0; k < kRound + 10; ++k) backend.process(keyframe(k));
+    backend.finish();
+    points = backend.snapshot()->point_count;
+    EXPECT_LT(backend.snapshot()->keyframe_count, kRound + 5);
+    EXPECT_EQ(query("SELECT count(*) FROM keyframes , clouds USING (id) WHERE length(points) < 100"),
+              std::to_string(backend.snapshot()->keyframe_count - kRound));
+    EXPECT_EQ(query("SELECT count(*) FROM keyframes"),
+              std::to_string(backend.snapshot()->keyframe_count));
+    EXPECT_EQ(query("SELECT count(*) FROM edges WHERE kind='loop'"), "1");
+  }
+  // And it is gone on with like any other.
+  Backend later({}, {}, {}, known_loops({}), file_);
+  later.finish();
+  EXPECT_NEAR(static_cast<double>(later.snapshot()->point_count),
+              static_cast<double>(points), 100.0);
 }
 
 }  // namespace

@@ -12,9 +12,9 @@ namespace {
 
 /// Walks a gallery and asks for loops; odometry drifts by what it is told.
 struct Walk {
-  explicit Walk(int galleries = 1, int pictured = 1)
+  explicit Walk(int galleries = 1, int pictured = 1, bool thins = true)
       : gallery(galleries, pictured),
-        detector(std::make_shared<const Vocabulary>(gallery.vocabulary())) {}
+        detector(std::make_shared<const Vocabulary>(gallery.vocabulary()), true, thins) {}
 
   /// From one place to another of a gallery, looking the way one goes.
   void go(double from_m, double to_m, int at_gallery = 0) {
@@ -31,6 +31,12 @@ struct Walk {
     truths.push_back(truth);
     time_s += 0.5;
     for (const LoopEdge& edge : detector.add(keyframe)) edges.push_back(edge);
+    if (const auto& seen = detector.seen_before()) {
+      ++known;
+      const Pose there = truths[seen->keyframe].inverse() * truth;
+      worst_known_m =
+          std::max(worst_known_m, (there.translation_m - seen->T_older_current.translation_m).norm());
+    }
     for (const LoopCandidate& candidate : detector.candidates()) candidates.push_back(candidate);
   }
 
@@ -45,6 +51,8 @@ struct Walk {
   std::vector<Pose> truths;
   std::vector<LoopEdge> edges;
   std::vector<LoopCandidate> candidates;
+  int known = 0;  ///< Keyframes that an older one shows too.
+  double worst_known_m = 0.0;
 };
 
 TEST(LoopDetector, FindsTheWayBackWhateverTheOdometrySays) {
@@ -138,6 +146,53 @@ TEST(LoopDetector, RepeatsBitForBit) {
     EXPECT_EQ(first[i].T_from_to.translation_m, second[i].T_from_to.translation_m);
     EXPECT_EQ(first[i].covariance, second[i].covariance);
   }
+}
+
+TEST(LoopDetector, WhatIsPassedAgainAndAgainIsKnown) {
+  Walk walk;
+  walk.go(2.0, 28.0);
+  EXPECT_EQ(walk.known, 0);
+  for (int pass = 0; pass < 3; ++pass) {
+    walk.go(28.0, 2.0);
+    walk.go(2.0, 28.0);
+  }
+  const int known_before = walk.known;
+  const std::size_t bytes_before = walk.detector.bytes();
+  const std::size_t edges_before = walk.edges.size();
+  for (int pass = 0; pass < 10; ++pass) {
+    walk.go(28.0, 2.0);
+    walk.go(2.0, 28.0);
+  }
+  // 1040 keyframes, of which 250 wait to be forgotten; each would take 20 kB.
+  EXPECT_GT(walk.known - known_before, 900);
+  EXPECT_LT(walk.detector.bytes(), bytes_before + 400 * 20'000);
+  const auto added = walk.edges.size() - edges_before;
+  EXPECT_LT(added, 20U * 26U / 3U) << "one a metre would say the same again and again";
+  EXPECT_GT(added, 20U * 2U) << "still held to the map";
+  EXPECT_LT(walk.worst(), 0.06);
+  EXPECT_LT(walk.worst_known_m, 0.1);
+}
+
+TEST(LoopDetector, WhereAnotherPictureHangsIsNotKnown) {
+  Walk walk(2, 1);
+  walk.go(2.0, 28.0, 0);
+  walk.go(28.0, 2.0, 0);
+  walk.go(2.0, 15.0, 0);
+  const int known = walk.known;
+  ASSERT_GT(known, 10);
+  // From here on the other gallery is taken for this one.
+  walk.drift.translation_m = {0.0, -TestGallery::kApart_m, 0.0};
+  walk.go(15.0, 28.0, 1);
+  EXPECT_LT(walk.known - known, 5);
+}
+
+TEST(LoopDetector, WhoKeepsAllIsToldOfNone) {
+  Walk walk(1, 1, false);
+  walk.go(2.0, 28.0);
+  walk.go(28.0, 2.0);
+  walk.go(2.0, 28.0);
+  EXPECT_FALSE(walk.edges.empty());
+  EXPECT_EQ(walk.known, 0);
 }
 
 TEST(LoopDetector, KeyframesWithoutKeypointsAreNoPlace) {
