@@ -22,12 +22,15 @@ namespace glint::daemon {
 namespace {
 
 /// What hello announces: only what works.
-constexpr std::array kFeatures = {
-    "authenticate",   "get_pose",         "get_pose.at_ns",   "get_pose.predict_ms", "get_status",
-    "get_metrics",    "get_image",        "get_map",          "get_trajectory",      "get_config",
-    "subscribe.pose", "subscribe.status", "subscribe.events", "unsubscribe",         "pause",
-    "resume",         "reset_odometry",   "save_map",         "list_maps",           "delete_map",
-    "load_map",       "clear_map",        "relocalize",       "set_initial_pose"};
+constexpr std::array kFeatures = {"authenticate",        "get_pose",        "get_pose.at_ns",
+                                  "get_pose.predict_ms", "get_status",      "get_metrics",
+                                  "get_image",           "get_map",         "get_trajectory",
+                                  "get_config",          "subscribe.pose",  "subscribe.status",
+                                  "subscribe.events",    "subscribe.map",   "subscribe.image",
+                                  "unsubscribe",         "pause",           "resume",
+                                  "reset_odometry",      "save_map",        "list_maps",
+                                  "delete_map",          "load_map",        "clear_map",
+                                  "relocalize",          "set_initial_pose"};
 
 /// How long a first look waits for a scan, and how much of that the queries of others wait, too.
 constexpr std::int64_t kImageWaitNs = 1'000'000'000;
@@ -120,9 +123,14 @@ Api::WorkerMethod Api::find_worker_method(std::string_view name) {
 
 void Api::call(const Request& request, Reply reply) {
   if (const WorkerMethod method = find_worker_method(request.method)) {
-    WorkerStep step = (this->*method)(request.params);
+    const auto line = [id = request.id, head = head()](const Json& fields) {
+      Json result = head;
+      result.update(fields);
+      return checked_line(id, result);
+    };
+    const auto refusal = [id = request.id](const RpcError& error) { return error_line(id, error); };
     return run_on_worker(std::make_shared<WorkerCall>(
-        WorkerCall{request.id, head(), std::move(step), std::move(reply)}));
+        WorkerCall{(this->*method)(request.params), line, refusal, std::move(reply)}));
   }
   const Method method = find_method(request.method);
   if (method == nullptr) {
@@ -130,6 +138,24 @@ void Api::call(const Request& request, Reply reply) {
                    "method");
   }
   reply(checked_line(request.id, (this->*method)(request.params)));
+}
+
+void Api::make(Notification notification, Reply reply) {
+  Json params = head();
+  params.update(notification.params);
+  const auto line = [method = std::move(notification.method), params](const Json& fields) {
+    if (fields.empty()) return std::string();
+    Json all = params;
+    all.update(fields);
+    return notification_line(method, all);
+  };
+  const auto refusal = [](const RpcError&) { return std::string(); };
+  try {
+    run_on_worker(std::make_shared<WorkerCall>(
+        WorkerCall{std::move(notification.step), line, refusal, reply}));
+  } catch (const RpcError&) {
+    boost::asio::post(io_, [reply] { reply({}); });
+  }
 }
 
 void Api::run_on_worker(const std::shared_ptr<WorkerCall>& call) {
@@ -140,7 +166,7 @@ void Api::run_on_worker(const std::shared_ptr<WorkerCall>& call) {
       try {
         run_on_worker(call);
       } catch (const RpcError& error) {
-        call->reply(error_line(call->id, error));
+        call->reply(call->refusal(error));
       }
     });
   });
@@ -152,13 +178,11 @@ std::optional<std::string> Api::take_step(const WorkerCall& call) {
   try {
     const auto fields = call.step();
     if (!fields) return std::nullopt;
-    Json result = call.head;
-    result.update(*fields);
-    return checked_line(call.id, result);
+    return call.line(*fields);
   } catch (const RpcError& error) {
-    return error_line(call.id, error);
+    return call.refusal(error);
   } catch (const std::exception& error) {
-    return error_line(call.id, RpcError(kInternalError, error.what()));
+    return call.refusal(RpcError(kInternalError, error.what()));
   }
 }
 
@@ -359,10 +383,28 @@ Api::WorkerStep Api::call_get_image(const Json& params) {
   runtime_.scan_tap().ask(begin_ns);
   return [this, kind = image_kind(params), begin_ns]() -> std::optional<Json> {
     if (const auto tapped = runtime_.scan_tap().latest(kImageStep)) {
-      return image_json(*tapped, kind);
+      return images_.json(tapped, kind);
     }
     if (steady_now_ns() - begin_ns < kImageWaitNs) return std::nullopt;
     throw RpcError(kNotTracking, "no scan came within a second, so there is no image");
+  };
+}
+
+// An image that cannot be is told like one: who subscribed would wait for ever.
+Api::WorkerStep Api::next_image(const std::string& kind,
+                                std::shared_ptr<std::optional<SensorTime>> told) {
+  const std::int64_t begin_ns = steady_now_ns();
+  runtime_.scan_tap().ask(begin_ns);
+  return [this, kind, begin_ns, told = std::move(told)]() -> std::optional<Json> {
+    const auto tapped = runtime_.scan_tap().latest(kImageStep);
+    if (!tapped && steady_now_ns() - begin_ns < kImageWaitNs) return std::nullopt;
+    if (!tapped || *told == tapped->stamp) return Json::object();
+    *told = tapped->stamp;
+    try {
+      return images_.json(tapped, kind);
+    } catch (const RpcError& error) {
+      return Json{{"kind", kind}, {"error", error.to_json()}};
+    }
   };
 }
 

@@ -11,6 +11,7 @@
 
 #include "daemon/config.hpp"
 #include "daemon/protocol.hpp"
+#include "daemon/protocol_image.hpp"
 #include "daemon/protocol_pose.hpp"
 #include "daemon/protocol_status.hpp"
 #include "daemon/runtime.hpp"
@@ -32,6 +33,27 @@ class Api {
 
   /// Answers a request that has an id. @throws RpcError, then there is no other reply.
   void call(const Request& request, Reply reply);
+
+  /// A step of a query on the worker: its fields, or null when it is to be called again, after the
+  /// queries of others. May throw RpcError.
+  using WorkerStep = std::function<std::optional<Json>()>;
+  /// A notification that the worker makes.
+  struct Notification {
+    std::string method;
+    Json params;      ///< What it has beside the fields of the step.
+    WorkerStep step;  ///< No fields: there is nothing to tell.
+  };
+  /// `reply` takes its line, later; an empty one where there is nothing to tell, or too many
+  /// queries wait.
+  void make(Notification notification, Reply reply);
+  /// The latest image for one who is told them: nothing where it is the one of `told`, the stamp of
+  /// the last one, which it keeps.
+  [[nodiscard]] WorkerStep next_image(const std::string& kind,
+                                      std::shared_ptr<std::optional<SensorTime>> told);
+  /// The map now; immutable.
+  [[nodiscard]] std::shared_ptr<const slam::MapSnapshot> map() const {
+    return runtime_.status().map->map;
+  }
 
   /// The first line of a connection. `asks_token`: nothing but authenticate works before it.
   [[nodiscard]] std::string hello_line(bool asks_token) const;
@@ -57,16 +79,13 @@ class Api {
  private:
   using Method = Json (Api::*)(const Json& params);
   static Method find_method(std::string_view name);
-  /// A step of a method on the worker: the fields of the result, or null when it is to be called
-  /// again, after the queries of others. May throw RpcError.
-  using WorkerStep = std::function<std::optional<Json>()>;
   using WorkerMethod = WorkerStep (Api::*)(const Json& params);
   static WorkerMethod find_worker_method(std::string_view name);
-  /// A method on the worker, and who waits for it.
+  /// A line that the worker makes, and who waits for it.
   struct WorkerCall {
-    Json id;
-    Json head;
     WorkerStep step;
+    std::function<std::string(Json fields)> line;  ///< May throw RpcError.
+    std::function<std::string(const RpcError& error)> refusal;
     Reply reply;
   };
 
@@ -108,6 +127,7 @@ class Api {
   std::size_t client_count_ = 0;
   const ServerCounters* server_counters_ = nullptr;  ///< Null: there is no server.
   std::size_t sessions_removed_ = 0;
+  ImageCache images_;  ///< The worker's.
 };
 
 }  // namespace glint::daemon

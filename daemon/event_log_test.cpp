@@ -62,9 +62,9 @@ TEST(EventLogTest, SubscribersAreToldWhatHappensFromThenOn) {
 TEST(EventLogTest, ASubscriberThatIsTooLateLearnsHowManyItMissed) {
   TestDaemon daemon;
   boost::asio::io_context io;
-  const Api api(io, daemon.runtime(), {});
+  Api api(io, daemon.runtime(), {});
   ServerCounters counters;
-  Subscriptions subscriptions(api, counters);
+  Subscriptions subscriptions(api, counters, [] {});
   subscriptions.subscribe({{"topics", {"events"}}});
   for (int i = 0; i < 300; ++i) daemon.runtime().events().post(event(i));
   const Json params = Json::parse(*subscriptions.next_line())["params"];

@@ -51,4 +51,13 @@ Json image_json(const TappedScan& tapped, const std::string& kind) {
   return out;
 }
 
+const Json& ImageCache::json(const std::shared_ptr<const TappedScan>& tapped,
+                             const std::string& kind) {
+  if (tapped_ != tapped) made_.clear();
+  tapped_ = tapped;
+  const auto made = made_.find(kind);
+  if (made != made_.end()) return made->second;
+  return made_.emplace(kind, image_json(*tapped, kind)).first->second;
+}
+
 }  // namespace glint::daemon

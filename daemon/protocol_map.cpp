@@ -156,6 +156,11 @@ MapQuery parse_map_query(const Json& params) {
   return query;
 }
 
+std::optional<MapCursor> next_cursor(const Json& page) {
+  const Json* text = find_param(page, "next_cursor");
+  return text == nullptr ? std::nullopt : std::optional(parse_cursor(*text));
+}
+
 Json map_page(const MapQuery& query, const slam::MapSnapshot& map) {
   MapCursor at =
       query.cursor.value_or(MapCursor{map.revision, {INT32_MIN, INT32_MIN, INT32_MIN}, 0});

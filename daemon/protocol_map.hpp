@@ -33,4 +33,7 @@ MapQuery parse_map_query(const Json& params);
 /// of the map, which moves all, is refused. @throws RpcError.
 Json map_page(const MapQuery& query, const slam::MapSnapshot& map);
 
+/// Where the page after this one begins; null where it is the last.
+std::optional<MapCursor> next_cursor(const Json& page);
+
 }  // namespace glint::daemon

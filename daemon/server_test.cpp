@@ -218,7 +218,7 @@ class SubscriptionsTest : public testing::Test {
   TestDaemon daemon_;
   Api api_{io_, daemon_.runtime(), Config{}};
   ServerCounters counters_;
-  Subscriptions subscriptions_{api_, counters_};
+  Subscriptions subscriptions_{api_, counters_, [] {}};
 };
 
 TEST_F(SubscriptionsTest, ASlowClientMissesTheOldestAndIsToldHowMany) {

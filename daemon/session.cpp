@@ -40,7 +40,11 @@ Session::Session(std::unique_ptr<Connection> connection, const SessionContext& c
       on_closed_(std::move(on_closed)),
       connection_(std::move(connection)),
       begin_ns_(steady_now_ns()),
-      subscriptions_(context_.api, context_.counters),
+      subscriptions_(context_.api, context_.counters,
+                     [this] {
+                       const auto self = shared_from_this();
+                       write();
+                     }),
       budget_(context_.limits.requests_per_s, begin_ns_),
       right_(right),
       last_request_ns_(begin_ns_),

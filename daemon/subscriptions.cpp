@@ -3,6 +3,7 @@
 #include "daemon/subscriptions.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -19,24 +20,31 @@ struct Topics {
   bool pose = false;
   bool status = false;
   bool events = false;
+  bool map = false;
+  bool image = false;
 };
 
 Topics parse_topics(const Json& params, bool required) {
   const Json* list = find_param(params, "topics");
-  if (list == nullptr && !required) return {true, true, true};
+  if (list == nullptr && !required) return {true, true, true, true, true};
   Topics topics;
-  bool ok = list != nullptr && list->is_array() && !list->empty();
-  if (ok) {
-    for (const Json& topic : *list) {
-      topics.pose = topics.pose || topic == "pose";
-      topics.status = topics.status || topic == "status";
-      topics.events = topics.events || topic == "events";
-      ok = ok && (topic == "pose" || topic == "status" || topic == "events");
-    }
-  }
-  if (!ok)
-    throw RpcError(kInvalidParams, "topics must be a list of pose, status, events", "topics");
-  return topics;
+  const std::array<std::pair<const char*, bool*>, 5> names{{{"pose", &topics.pose},
+                                                            {"status", &topics.status},
+                                                            {"events", &topics.events},
+                                                            {"map", &topics.map},
+                                                            {"image", &topics.image}}};
+  const auto note = [&](const Json& topic) {
+    const auto* const name =
+        std::ranges::find_if(names, [&](const auto& n) { return topic == n.first; });
+    if (name == names.end()) return false;
+    *name->second = true;
+    return true;
+  };
+  const bool ok =
+      list != nullptr && list->is_array() && !list->empty() && std::ranges::all_of(*list, note);
+  if (ok) return topics;
+  throw RpcError(kInvalidParams, "topics must be a list of pose, status, events, map, image",
+                 "topics");
 }
 
 std::int64_t period_ns(double rate_hz) { return std::llround(1e9 / rate_hz); }
@@ -47,6 +55,13 @@ Json Subscriptions::subscribe(const Json& params) {
   const Topics topics = parse_topics(params, true);
   const PoseFrames frames = pose_frames(params);
   const double asked_hz = number_param(params, "rate_hz", 0.0, kMinRateHz, kMaxRateHz);
+  // These may refuse their parameters: nothing has changed then.
+  std::unique_ptr<ToldByWorker> map =
+      topics.map ? tell_map(api_, params, asked_hz, on_line_) : nullptr;
+  std::unique_ptr<ToldByWorker> image =
+      topics.image ? tell_images(api_, params, asked_hz, on_line_) : nullptr;
+  if (map) map_ = std::move(map);
+  if (image) image_ = std::move(image);
   if (topics.pose) {
     PoseTopic topic;
     topic.frames = frames;
@@ -73,6 +88,8 @@ Json Subscriptions::unsubscribe(const Json& params) {
   if (topics.pose) pose_.reset();
   if (topics.status) status_.reset();
   if (topics.events) events_.reset();
+  if (topics.map) map_.reset();
+  if (topics.image) image_.reset();
   return echo();
 }
 
@@ -93,6 +110,14 @@ Json Subscriptions::echo() const {
   if (events_) {
     topics.push_back("events");
     settings["events"] = Json::object();
+  }
+  if (map_) {
+    topics.push_back("map");
+    settings["map"] = map_->settings();
+  }
+  if (image_) {
+    topics.push_back("image");
+    settings["image"] = image_->settings();
   }
   Json out = api_.head();
   out["topics"] = std::move(topics);
@@ -119,6 +144,9 @@ void Subscriptions::offer(const std::shared_ptr<const Snapshot>& snapshot) {
 }
 
 void Subscriptions::tick(std::int64_t now_ns) {
+  for (ToldByWorker* const topic : {map_.get(), image_.get()}) {
+    if (topic != nullptr && topic->tick(now_ns)) ++counters_.missed_notifications;
+  }
   if (!status_ || now_ns < status_->next_due_ns) return;
   status_->next_due_ns += status_->period_ns;
   if (status_->next_due_ns <= now_ns) status_->next_due_ns = now_ns + status_->period_ns;
@@ -134,6 +162,8 @@ std::optional<std::string> Subscriptions::next_line() {
   auto line = next_event();  // They are few, and the newest poses come soon enough.
   if (!line) line = next_pose();
   if (!line) line = next_status();
+  if (!line && image_) line = image_->take_line();
+  if (!line && map_) line = map_->take_line();
   return line;
 }
 

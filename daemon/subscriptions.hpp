@@ -4,14 +4,17 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "daemon/api.hpp"
 #include "daemon/protocol_pose.hpp"
 #include "daemon/server_counters.hpp"
 #include "daemon/snapshot.hpp"
+#include "daemon/told_by_worker.hpp"
 
 namespace glint::daemon {
 
@@ -20,17 +23,19 @@ namespace glint::daemon {
 /// told how many it missed. Lives on the main thread.
 class Subscriptions {
  public:
-  /// `counters` takes what is missed.
-  Subscriptions(const Api& api, ServerCounters& counters) : api_(api), counters_(counters) {}
+  /// `counters` takes what is missed. `on_line`: called when next_line() has one that did not come
+  /// by offer() or tick().
+  Subscriptions(Api& api, ServerCounters& counters, std::function<void()> on_line)
+      : api_(api), counters_(counters), on_line_(std::move(on_line)) {}
 
   /// subscribe and unsubscribe; the result is the echo of what is now in effect. @throws RpcError.
   Json subscribe(const Json& params);
   Json unsubscribe(const Json& params);
-  [[nodiscard]] bool empty() const { return !pose_ && !status_ && !events_; }
+  [[nodiscard]] bool empty() const { return !pose_ && !status_ && !events_ && !map_ && !image_; }
 
   /// A new pose is there.
   void offer(const std::shared_ptr<const Snapshot>& snapshot);
-  /// Time passes: a status notification may be due.
+  /// Time passes: notifications of other topics may be due.
   void tick(std::int64_t now_ns);
 
   /// The next line to send, made only now so that its `missed` is true; null when none waits.
@@ -70,11 +75,14 @@ class Subscriptions {
   std::optional<std::string> next_status();
   std::optional<std::string> next_event();
 
-  const Api& api_;
+  Api& api_;
   ServerCounters& counters_;
+  const std::function<void()> on_line_;
   std::optional<PoseTopic> pose_;
   std::optional<StatusTopic> status_;
   std::optional<EventTopic> events_;
+  std::unique_ptr<ToldByWorker> map_;
+  std::unique_ptr<ToldByWorker> image_;
 };
 
 }  // namespace glint::daemon

@@ -407,7 +407,8 @@ class Client {
   Pose get_pose(const Json& params = Json::object()) { return to_pose(call("get_pose", params)); }
   Json get_status() { return call("get_status"); }
 
-  /// Topics "pose", "status", "events"; `more` params of subscribe: frame, child, rate_hz.
+  /// Topics "pose", "status", "events", "map", "image"; `more` params of subscribe: frame, child,
+  /// rate_hz, voxel_m, region, encoding, kind.
   Subscription subscribe(const std::vector<std::string>& topics, Json more = Json::object()) {
     more["topics"] = topics;
     return {options_, std::move(more)};

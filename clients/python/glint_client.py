@@ -371,9 +371,10 @@ class Client:
             time.sleep(0.1)
         raise ConnectionLost(f"job {job['id']} ({job['kind']}) has not ended after {timeout_s} s")
 
-    def subscribe(self, *topics, rate_hz=None, frame="map", child="sensor", reconnect=True):
-        """Notifications of `topics` ("pose", "status", "events"), over a connection of their own: a Subscription."""
-        params = dict(_given(rate_hz=rate_hz), topics=list(topics), frame=frame, child=child)
+    def subscribe(self, *topics, rate_hz=None, frame="map", child="sensor", reconnect=True, **more):
+        """Notifications of `topics` ("pose", "status", "events", "map", "image"), over a connection of their own: a
+        Subscription. `more`: voxel_m, region and encoding of the map, kind of the image."""
+        params = dict(_given(rate_hz=rate_hz), topics=list(topics), frame=frame, child=child, **more)
         return Subscription(self._place, params, reconnect)
 
 

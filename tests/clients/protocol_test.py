@@ -20,7 +20,7 @@ from glintd_process import ROOT, GlintdProcess, await_status
 from glint_client import Client, RequestError
 
 GLINTD = sys.argv.pop(1)
-NO_METHODS = {"common", "error", "hello", "pose", "status", "event"}
+NO_METHODS = {"common", "error", "hello", "pose", "status", "event", "map", "image"}
 # What takes the map from under the others comes last.
 LATE = ["relocalize", "set_initial_pose", "reset_odometry", "load_map", "clear_map"]
 
@@ -148,7 +148,7 @@ class TheDaemon(unittest.TestCase):
         cls.daemon = GlintdProcess(GLINTD, source="synth:corridor")
         cls.daemon.start()
         cls.client = Client(cls.daemon.tcp)
-        cls.subscription = cls.client.subscribe("pose", "status", "events")
+        cls.subscription = cls.client.subscribe("pose", "status", "events", "map", "image", kind="signal")
         await_status(cls.client, lambda status: status["map"]["keyframes"] >= 3)
 
     @classmethod
@@ -203,7 +203,7 @@ class TheDaemon(unittest.TestCase):
             kinds.add(notification.get("kind", notification.method))
             if notification.get("action") == "cleared":
                 break
-        self.assertLessEqual({"pose", "status", "sensor", "job", "map", "epoch"}, kinds)
+        self.assertLessEqual({"pose", "status", "sensor", "job", "map", "epoch", "signal"}, kinds)
 
     def test_other_questions_are_answered_as_the_schemas_say(self):
         now = self.client.get_pose("odom")
