@@ -36,6 +36,9 @@ constexpr std::array kFeatures = {"authenticate",        "get_pose",        "get
 constexpr std::int64_t kImageWaitNs = 1'000'000'000;
 constexpr std::chrono::milliseconds kImageStep{10};
 
+/// A pose as text is told to all for so long: its age is not older than that.
+constexpr std::int64_t kPoseTextNs = 10'000'000;
+
 /// Tells one run of the daemon from the next.
 std::string random_instance() {
   std::random_device device;
@@ -226,6 +229,16 @@ std::string Api::health_problem() const {
 
 Json Api::pose(const Snapshot& snapshot, PoseFrames frames) const {
   return newest_pose_json(snapshot, frames, context(), steady_now_ns());
+}
+
+const std::string& Api::pose_text(const std::shared_ptr<const Snapshot>& snapshot,
+                                  PoseFrames frames) {
+  PoseText& pose_text = pose_texts_.at((frames.map ? 1U : 0U) + (frames.base ? 2U : 0U));
+  const std::int64_t now_ns = steady_now_ns();
+  if (pose_text.snapshot != snapshot || now_ns - pose_text.made_ns > kPoseTextNs) {
+    pose_text = {snapshot, now_ns, pose(*snapshot, frames).dump()};
+  }
+  return pose_text.text;
 }
 
 Json Api::head() const {

@@ -2,6 +2,7 @@
 // Copyright 2026 The Glint Authors
 #pragma once
 
+#include <array>
 #include <boost/asio/io_context.hpp>
 #include <functional>
 #include <memory>
@@ -63,6 +64,9 @@ class Api {
   /// Why the daemon is not well; empty when all of its threads live.
   [[nodiscard]] std::string health_problem() const;
   [[nodiscard]] Json pose(const Snapshot& snapshot, PoseFrames frames) const;
+  /// The same as text, made once for all who are told it at the same time. Valid until the next
+  /// call.
+  const std::string& pose_text(const std::shared_ptr<const Snapshot>& snapshot, PoseFrames frames);
   /// sensor, state and time: what every answer has.
   [[nodiscard]] Json head() const;
   [[nodiscard]] const EventLog& events() const { return runtime_.events(); }
@@ -128,6 +132,13 @@ class Api {
   const ServerCounters* server_counters_ = nullptr;  ///< Null: there is no server.
   std::size_t sessions_removed_ = 0;
   ImageCache images_;  ///< The worker's.
+  /// A pose as text, and of when it is.
+  struct PoseText {
+    std::shared_ptr<const Snapshot> snapshot;
+    std::int64_t made_ns = 0;
+    std::string text;
+  };
+  std::array<PoseText, 4> pose_texts_;  ///< By frames.
 };
 
 }  // namespace glint::daemon

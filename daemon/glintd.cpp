@@ -9,6 +9,7 @@
 #include <iostream>
 
 #include "daemon/config_layers.hpp"
+#include "daemon/file_limit.hpp"
 #include "daemon/input.hpp"
 #include "daemon/log.hpp"
 #include "daemon/service.hpp"
@@ -20,6 +21,9 @@ namespace {
 constexpr int kFailed = 1;
 constexpr int kUsage = 2;
 constexpr int kBadConfig = 78;  // EX_CONFIG: systemd is told not to start the daemon again.
+
+// Beside clients: sensor, session, maps, metrics.
+constexpr std::size_t kOtherFiles = 256;
 
 struct Options {
   std::string config_file;
@@ -45,6 +49,12 @@ int serve(const Options& options) {
   }
   set_up_logging(config.log.level);
   spdlog::info("glintd {}", kVersion);
+  const std::size_t files = static_cast<std::size_t>(config.server.max_clients) + kOtherFiles;
+  if (const std::size_t limit = raise_file_limit(files); limit < files) {
+    spdlog::warn(
+        "server.max_clients = {}, but only {} files may be open: raise LimitNOFILE or ulimit -n",
+        config.server.max_clients, limit);
+  }
   // Its end would wait for a name that is being looked up, which takes the resolver half a minute
   // when no server answers: it is left to the process's end.
   static boost::asio::io_context& io = *new boost::asio::io_context(1);

@@ -145,6 +145,13 @@ std::string notification_line(std::string_view method, const Json& params) {
   return line_of(Json{{"jsonrpc", "2.0"}, {"method", method}, {"params", params}});
 }
 
+std::string numbered_notification_line(std::string_view method, std::string_view params,
+                                       std::uint64_t seq, std::uint64_t missed) {
+  params.remove_suffix(1);
+  return fmt::format(R"({{"jsonrpc":"2.0","method":"{}","params":{},"seq":{},"missed":{}}}}}{})",
+                     method, params, seq, missed, '\n');
+}
+
 std::string time_string(std::int64_t ns) {
   const std::uint64_t size =
       ns < 0 ? ~static_cast<std::uint64_t>(ns) + 1 : static_cast<std::uint64_t>(ns);

@@ -73,6 +73,10 @@ RpcError not_json();
 std::string result_line(const Json& id, const Json& result);
 std::string error_line(const Json& id, const RpcError& error);
 std::string notification_line(std::string_view method, const Json& params);
+/// The same of params that are text already, an object with members; its number and how many were
+/// missed come in.
+std::string numbered_notification_line(std::string_view method, std::string_view params,
+                                       std::uint64_t seq, std::uint64_t missed);
 
 /// "sec.nnnnnnnnn".
 std::string time_string(std::int64_t ns);

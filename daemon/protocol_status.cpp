@@ -96,6 +96,7 @@ Json queue_json(const QueueStatus& queue) {
 Json server_json(const ServerCounters& c) {
   return Json{{"accepted_clients", c.accepted_clients},
               {"refused_clients", c.refused_clients},
+              {"failed_accepts", c.failed_accepts},
               {"junk_clients", c.junk_clients},
               {"idle_clients", c.idle_clients},
               {"slow_clients", c.slow_clients},

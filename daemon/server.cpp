@@ -170,6 +170,7 @@ void Server::accept(Acceptor& acceptor) {
     }
     if (!error) return accept(acceptor);
     // Out of file descriptors or the like: it passes, and a retry at once would spin.
+    ++counters_.failed_accepts;
     auto pause = std::make_shared<boost::asio::steady_timer>(io_, kAcceptPause);
     pause->async_wait([this, &acceptor, pause](error_code) {
       if (!closed_) accept(acceptor);

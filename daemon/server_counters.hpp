@@ -10,6 +10,7 @@ namespace glint::daemon {
 struct ServerCounters {
   std::uint64_t accepted_clients = 0;
   std::uint64_t refused_clients = 0;  ///< One too many, or no room left for those without a token.
+  std::uint64_t failed_accepts = 0;   ///< The process or the system had no room for a client.
   std::uint64_t junk_clients = 0;     ///< Closed: another protocol, or too long a line.
   std::uint64_t idle_clients = 0;     ///< Closed: they asked for nothing for too long.
   std::uint64_t slow_clients = 0;     ///< Closed: they did not take what waited for them.

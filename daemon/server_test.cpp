@@ -232,6 +232,28 @@ TEST_F(SubscriptionsTest, ASlowClientMissesTheOldestAndIsToldHowMany) {
   EXPECT_EQ(last["seq"], 99);
 }
 
+TEST_F(SubscriptionsTest, AllAreToldOnePoseEachInItsFrameWithItsNumber) {
+  Subscriptions other(api_, counters_, [] {});
+  Subscriptions elsewhere(api_, counters_, [] {});
+  subscriptions_.subscribe({{"topics", {"pose"}}});
+  subscriptions_.offer(scan(0));
+  other.subscribe({{"topics", {"pose"}}});
+  elsewhere.subscribe({{"topics", {"pose"}}, {"frame", "odom"}, {"child", "base"}});
+  const auto newest = scan(1);
+  for (Subscriptions* const each : {&subscriptions_, &other, &elsewhere}) each->offer(newest);
+  static_cast<void>(subscriptions_.next_line());
+  Json first = params_of(subscriptions_.next_line());
+  Json second = params_of(other.next_line());
+  const Json third = params_of(elsewhere.next_line());
+  EXPECT_EQ(first["seq"], 1);
+  EXPECT_EQ(second["seq"], 0);
+  second["seq"] = 1;
+  EXPECT_EQ(first, second);
+  EXPECT_EQ(third["frame"], "odom");
+  EXPECT_EQ(third["child"], "base");
+  EXPECT_EQ(third["t_ns"], 100'000'000);
+}
+
 TEST_F(SubscriptionsTest, ALowerRateThinsEvenly) {
   subscriptions_.subscribe({{"topics", {"pose"}}, {"rate_hz", 2.0}});
   for (std::int64_t k = 0; k < 20; ++k) subscriptions_.offer(scan(k));

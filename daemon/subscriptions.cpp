@@ -186,10 +186,8 @@ std::optional<std::string> Subscriptions::next_pose() {
   if (!pose_ || pose_->waiting.empty()) return std::nullopt;
   const WaitingPose waiting = std::move(pose_->waiting.front());
   pose_->waiting.pop_front();
-  Json params = api_.pose(*waiting.snapshot, pose_->frames);
-  params["seq"] = waiting.seq;
-  params["missed"] = pose_->missed;
-  return notification_line("pose", params);
+  return numbered_notification_line("pose", api_.pose_text(waiting.snapshot, pose_->frames),
+                                    waiting.seq, pose_->missed);
 }
 
 std::optional<std::string> Subscriptions::next_status() {
