@@ -21,7 +21,7 @@ import numpy as np
 WORLDS = ["building", "street", "parking", "stairs"]
 FIGURES = re.compile(r"found (\d+) of (\d+), (\d+) elsewhere, (\d+) wrong")
 # Where the floor is one, the way can be left to either side by so much without walking into things.
-BESIDE_M = {"building": 0.6, "street": 0.8, "parking": 0.8, "stairs": 0.3}
+BESIDE_M = {"building": 0.3, "street": 0.8, "parking": 0.8, "stairs": 0.3}
 
 
 def quaternion_about_z(angle_rad: np.ndarray) -> np.ndarray:
