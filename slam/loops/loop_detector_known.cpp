@@ -59,8 +59,8 @@ std::optional<std::size_t> LoopDetector::nearest_older(const PlacePair& loop,
                                                        const Pose& here) const {
   std::optional<std::size_t> nearest;
   double least_m = kSameSpot_m;
-  auto place = std::ranges::lower_bound(places_, loop.older.path_m - 2.0 * kTied_m, {},
-                                        &Place::path_m);
+  auto place =
+      std::ranges::lower_bound(places_, loop.older.path_m - 2.0 * kTied_m, {}, &Place::path_m);
   for (; place != places_.end() && place->path_m < loop.older.path_m + 2.0 * kTied_m; ++place) {
     const auto entry = static_cast<std::size_t>(place - places_.begin());
     if (entry >= aged_) break;
