@@ -120,11 +120,13 @@ bool ToldByWorker::tick(std::int64_t now_ns) {
   if (now_ns < next_due_ns_) return false;
   next_due_ns_ = std::max(next_due_ns_ + period_ns_, now_ns + period_ns_ / 2);
   // What is known of the client is the worker's while it is asked.
-  if (asked_ || goes_on() || !has_news()) return false;
+  if (asked_) return false;
   if (line_.empty()) {
-    ask();
+    // A page that the worker had no time for is asked for again.
+    if (goes_on() || has_news()) ask();
     return false;
   }
+  if (goes_on() || !has_news()) return false;
   // The client has not taken the last one yet.
   ++missed_;
   return true;
