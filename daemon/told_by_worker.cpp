@@ -62,7 +62,9 @@ class MapTopic : public ToldByWorker {
  protected:
   [[nodiscard]] bool has_news() const override {
     const auto map = api().map();
-    return map->revision > 0 && (!is_known(*map) || map->revision != told_->revision);
+    if (is_known(*map)) return map->revision != told_->revision;
+    // An empty map is news for who holds another one.
+    return map->revision > 0 || told_->revision > 0;
   }
   [[nodiscard]] bool goes_on() const override { return told_->cursor.has_value(); }
 
