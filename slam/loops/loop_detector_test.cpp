@@ -34,8 +34,8 @@ struct Walk {
     if (const auto& seen = detector.seen_before()) {
       ++known;
       const Pose there = truths[seen->keyframe].inverse() * truth;
-      worst_known_m =
-          std::max(worst_known_m, (there.translation_m - seen->T_older_current.translation_m).norm());
+      worst_known_m = std::max(worst_known_m,
+                               (there.translation_m - seen->T_older_current.translation_m).norm());
     }
     for (const LoopCandidate& candidate : detector.candidates()) candidates.push_back(candidate);
   }
